@@ -24,12 +24,15 @@ static const char usage[] =
 
 #include "output.h"
 
-#include "io/mesh/mesh_write.h"
 #include "stages/views.h"
+
+#include "base/memory.h"
+
+#include <inttypes.h>
 
 /* What is written of a stream, with what must be freed. */
 struct body {
-    struct mesh_view mesh;
+    struct cells cells;
     struct cell_regions regions;
     struct named_facets facets;
     struct named_sets sets;
@@ -44,29 +47,210 @@ static void body_free(struct body *body)
 
 static enum status find_body(const struct stream *stream, struct body *body, struct error *error)
 {
-    struct mesh_view *mesh = &body->mesh;
-    struct cells cells;
-    RETURN_IF_ERROR(stream_cells(stream, true, &cells, error));
+    RETURN_IF_ERROR(stream_cells(stream, true, &body->cells, error));
     RETURN_IF_ERROR(stream_regions(stream, &body->regions, error));
-    RETURN_IF_ERROR(stream_facets(stream, false, &cells, &body->facets, error));
-    mesh->dim = cells.dim;
-    mesh->node_count = cells.node_count;
-    mesh->x = cells.x;
-    mesh->cell_count = cells.count;
-    mesh->cells = cells.node;
-    mesh->region = body->regions.of_cell;
-    mesh->regions = body->regions.names;
-    mesh->facet_count = body->facets.count;
-    mesh->facets = body->facets.facet;
-    mesh->facet_set = body->facets.group;
-    mesh->facet_sets = body->facets.names;
-    if (stream_find(stream, "sets.ptr") != NULL) {
-        RETURN_IF_ERROR(stream_sets(stream, true, cells.node_count, &body->sets, error));
-        mesh->set_ptr = body->sets.lists.ptr;
-        mesh->set_idx = body->sets.lists.idx;
-        mesh->node_sets = body->sets.names;
+    RETURN_IF_ERROR(stream_facets(stream, false, &body->cells, &body->facets, error));
+    return stream_sets(stream, false, body->cells.node_count, &body->sets, error);
+}
+
+/* The formats: Gmsh reference manual, "MSH file format"; Abaqus keywords, as the CalculiX manual has them. */
+
+/* Lengths are divided rather than multiplied, so that 0.01 m is 10 mm and not 10.000000000000002. */
+static void print_place(FILE *file, const struct cells *cells, int64_t node, double unit,
+                        const char *separator)
+{
+    for (int a = 0; a < 3; a++) {
+        double x = a < cells->dim ? cells->x[node * cells->dim + a] / unit : 0.0;
+        fprintf(file, "%s%.17g", a == 0 ? "" : separator, x);
+    }
+    fputc('\n', file);
+}
+
+/* The end of the run of items of one group that begins at `first`: groups are written in runs, so that items
+ * keep their order. */
+static int64_t run_end(int64_t count, const int32_t *group, int64_t first)
+{
+    int64_t end = first + 1;
+    while (end < count && group[end] == group[first]) {
+        end++;
+    }
+    return end;
+}
+
+/* ---- MSH ---- */
+
+/* Groups of one dimension: a physical group and an entity for each name, with the same tag, from 1. */
+struct group_kind {
+    int dim, type, corners; /* type: gmsh's number of the element */
+    int64_t count;          /* elements */
+    const int32_t *element, *group;
+    const struct names *names;
+};
+
+static void print_names(FILE *file, const struct group_kind kind[3])
+{
+    int64_t count = 0;
+    for (int k = 0; k < 3; k++) {
+        count += kind[k].names->count;
+    }
+    fprintf(file, "$PhysicalNames\n%" PRId64 "\n", count);
+    for (int k = 0; k < 3; k++) {
+        for (int32_t g = 0; g < kind[k].names->count; g++) {
+            fprintf(file, "%d %d \"%s\"\n", kind[k].dim, g + 1, kind[k].names->name[g]);
+        }
+    }
+    fprintf(file, "$EndPhysicalNames\n");
+}
+
+/* Those of the lowest dimension come first. Their boxes, which readers do not use, are zeros. */
+static void print_entities(FILE *file, const struct group_kind kind[3])
+{
+    int64_t count[4] = {0};
+    for (int k = 0; k < 3; k++) {
+        count[kind[k].dim] = kind[k].names->count;
+    }
+    fprintf(file, "$Entities\n%" PRId64 " %" PRId64 " %" PRId64 " %" PRId64 "\n", count[0], count[1],
+            count[2], count[3]);
+    for (int k = 2; k >= 0; k--) {
+        for (int32_t g = 0; g < kind[k].names->count; g++) {
+            fprintf(file, kind[k].dim == 0 ? "%d 0 0 0 1 %d\n" : "%d 0 0 0 0 0 0 1 %d 0\n", g + 1, g + 1);
+        }
+    }
+    fprintf(file, "$EndEntities\n");
+}
+
+static void print_elements(FILE *file, const struct group_kind kind[3])
+{
+    int64_t blocks = 0, elements = 0, tag = 0;
+    for (int k = 0; k < 3; k++) {
+        elements += kind[k].count;
+        for (int64_t e = 0; e < kind[k].count; e = run_end(kind[k].count, kind[k].group, e)) {
+            blocks++;
+        }
+    }
+    fprintf(file, "$Elements\n%" PRId64 " %" PRId64 " %d %" PRId64 "\n", blocks, elements, elements > 0,
+            elements);
+    for (int k = 2; k >= 0; k--) {
+        for (int64_t e = 0; e < kind[k].count;) {
+            int64_t end = run_end(kind[k].count, kind[k].group, e);
+            fprintf(file, "%d %d %d %" PRId64 "\n", kind[k].dim, kind[k].group[e] + 1, kind[k].type, end - e);
+            for (; e < end; e++) {
+                fprintf(file, "%" PRId64, ++tag);
+                for (int c = 0; c < kind[k].corners; c++) {
+                    fprintf(file, " %d", kind[k].element[e * kind[k].corners + c] + 1);
+                }
+                fputc('\n', file);
+            }
+        }
+    }
+    fprintf(file, "$EndElements\n");
+}
+
+/* Print the body as a file of gmsh, MSH 4.1 as text. */
+static enum status write_msh(FILE *file, const struct body *body, double unit, struct error *error)
+{
+    const struct cells *cells = &body->cells;
+    const struct neighbours *sets = &body->sets.lists;
+    int dim = cells->dim;
+    int64_t nodes = cells->node_count, set_size = sets->count > 0 ? sets->ptr[sets->count] : 0;
+    NEW_SCRATCH(int32_t, set, set_size, error);
+    for (int32_t g = 0; g < sets->count; g++) {
+        for (int64_t i = sets->ptr[g]; i < sets->ptr[g + 1]; i++) {
+            set[i] = g;
+        }
+    }
+    const struct group_kind kind[3] = {{dim, dim == 3 ? 4 : 2, dim + 1, cells->count, cells->node,
+                                        body->regions.of_cell, &body->regions.names},
+                                       {dim - 1, dim == 3 ? 2 : 1, dim, body->facets.count,
+                                        body->facets.facet, body->facets.group, &body->facets.names},
+                                       {0, 15, 1, set_size, sets->idx, set, &body->sets.names}};
+    fprintf(file, "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n");
+    print_names(file, kind);
+    print_entities(file, kind);
+    fprintf(file, "$Nodes\n1 %" PRId64 " 1 %" PRId64 "\n%d 1 0 %" PRId64 "\n", nodes, nodes, dim, nodes);
+    for (int64_t n = 0; n < nodes; n++) {
+        fprintf(file, "%" PRId64 "\n", n + 1);
+    }
+    for (int64_t n = 0; n < nodes; n++) {
+        print_place(file, cells, n, unit, " ");
+    }
+    fprintf(file, "$EndNodes\n");
+    print_elements(file, kind);
+    return STATUS_OK;
+}
+
+/* ---- decks of Abaqus and CalculiX ---- */
+
+static void print_cells(FILE *file, const struct cells *cells, const struct cell_regions *regions)
+{
+    for (int64_t c = 0; c < cells->count;) {
+        int64_t end = run_end(cells->count, regions->of_cell, c);
+        fprintf(file, "*ELEMENT, TYPE=%s, ELSET=%s\n", cells->dim == 3 ? "C3D4" : "CPE3",
+                regions->names.name[regions->of_cell[c]]);
+        for (; c < end; c++) {
+            fprintf(file, "%" PRId64, c + 1);
+            for (int k = 0; k <= cells->dim; k++) {
+                fprintf(file, ", %d", cells->node[c * (cells->dim + 1) + k] + 1);
+            }
+            fputc('\n', file);
+        }
+    }
+}
+
+/* The faces of an element by the corner that each lies opposite. */
+static const char *const face_names[2][4] = {{"S2", "S3", "S1", ""}, {"S3", "S4", "S2", "S1"}};
+
+static enum status print_surfaces(FILE *file, const struct cells *cells, const struct named_facets *facets,
+                                  struct error *error)
+{
+    FREED_BY(faces_free) struct faces faces = {0};
+    NEW_SCRATCH(int64_t, found, facets->count, error);
+    RETURN_IF_ERROR(faces_build(cells, true, &faces, error));
+    RETURN_IF_ERROR(faces_find(&faces, facets->count, facets->facet, found, error));
+    for (int32_t g = 0; g < facets->names.count; g++) {
+        fprintf(file, "*SURFACE, TYPE=ELEMENT, NAME=%s\n", facets->names.name[g]);
+        for (int64_t f = 0; f < facets->count; f++) {
+            int vertex = 0;
+            if (facets->group[f] != g) {
+                continue;
+            }
+            if (found[f] < 0) {
+                return fail(error, STATUS_INPUT, "facets: row %" PRId64 ": no face of exactly one cell", f);
+            }
+            int64_t cell = faces.cell[2 * found[f]];
+            const int32_t *corner = cells->node + cell * (cells->dim + 1),
+                          *node = facets->facet + f * cells->dim;
+            while (corner[vertex] == node[0] || corner[vertex] == node[1] ||
+                   corner[vertex] == node[cells->dim - 1]) {
+                vertex++;
+            }
+            fprintf(file, "%" PRId64 ", %s\n", cell + 1, face_names[cells->dim == 3][vertex]);
+        }
     }
     return STATUS_OK;
+}
+
+/* Print the body as a deck of Abaqus and CalculiX; lists eight to a line. */
+static enum status write_inp(FILE *file, const struct body *body, double unit, struct error *error)
+{
+    const struct neighbours *sets = &body->sets.lists;
+    fprintf(file, "*NODE\n");
+    for (int64_t n = 0; n < body->cells.node_count; n++) {
+        fprintf(file, "%" PRId64 ", ", n + 1);
+        print_place(file, &body->cells, n, unit, ", ");
+    }
+    print_cells(file, &body->cells, &body->regions);
+    for (int32_t g = 0; g < sets->count; g++) {
+        int64_t first = sets->ptr[g], count = sets->ptr[g + 1] - first;
+        fprintf(file, "*NSET, NSET=%s\n", body->sets.names.name[g]);
+        for (int64_t i = 0; i < count; i++) {
+            fprintf(file, "%d%s", sets->idx[first + i] + 1,
+                    i + 1 == count ? "\n"
+                    : i % 8 == 7   ? ",\n"
+                                   : ", ");
+        }
+    }
+    return print_surfaces(file, &body->cells, &body->facets, error);
 }
 
 int main(int argc, char *argv[])
@@ -85,8 +269,8 @@ int main(int argc, char *argv[])
     tool_read(&tool, tool.operands[0], &stream);
     tool_check(&tool, find_body(&stream, &body, &error), &error);
     tool_print_to(&tool, &output, tool.output);
-    enum status status = is_msh ? mesh_write_msh(output.file, &body.mesh, unit, &error)
-                                : mesh_write_inp(output.file, &body.mesh, unit, &error);
+    enum status status =
+        is_msh ? write_msh(output.file, &body, unit, &error) : write_inp(output.file, &body, unit, &error);
     tool_check(&tool, output_end(&output, status, &error), &error);
     return tool_end(&tool);
 }

@@ -1,7 +1,6 @@
 /* The steps of mesh_build; private to lib/io. */
 #pragma once
 
-#include "base/keyed.h"
 #include "base/status.h"
 #include "io/mesh/msh.h"
 
@@ -55,23 +54,3 @@ MUST_CHECK enum status mesh_build_facets(struct mesh_draft *draft);
  * is split along the diagonal through its lowest node; with `other`, a quadrangle is split along the other
  * diagonal (for meshes in the plane, whose cells share no quadrangles). */
 int msh_split(int type, const int32_t node[], bool other, int32_t simplices[MSH_MOST_SIMPLICES][4]);
-
-/* ---- msh_faces.c: the faces (edges in 2D) of a mesh of simplices, to be found by their nodes ---- */
-
-struct msh_faces {
-    int dim;
-    const int32_t *cells; /* the caller's, cell_count x (dim + 1), positively oriented */
-    int64_t count;
-    struct keyed *face; /* count, sorted: cell * (dim + 1) + the node of the cell that is not on it */
-};
-
-MUST_CHECK enum status msh_faces_make(struct msh_faces *faces, int dim, int64_t cell_count,
-                                      const int32_t cells[], struct error *error);
-void msh_faces_free(struct msh_faces *faces);
-
-/* The index of the first face with these `dim` nodes, in any order; *count: number of cells that share it. */
-int64_t msh_faces_find(const struct msh_faces *faces, const int32_t node[], int *count);
-
-/* The nodes of a face, oriented outward from its cell: in 2D the cell is on the left from first to second
- * node, in 3D the right-hand normal points out. */
-void msh_face_nodes(const struct msh_faces *faces, int64_t face, int32_t node[]);

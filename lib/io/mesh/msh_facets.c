@@ -1,3 +1,4 @@
+#include "base/keyed.h"
 #include "base/lists.h"
 #include "base/memory.h"
 #include "io/mesh/msh_build.h"
@@ -5,10 +6,39 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* The faces (edges in 2D) of the cells, to be found by their nodes. */
+struct faces {
+    int dim;
+    const int32_t *cells;
+    int64_t count;
+    struct keyed *face; /* count, sorted: cell * (dim + 1) + the node of the cell that is not on it */
+};
+
+/* The nodes of a face, oriented outward from its cell. */
+static void face_nodes(const struct faces *faces, int64_t face, int32_t node[])
+{
+    int64_t slot = faces->face[face].item, corners = faces->dim + 1;
+    simplex_face(faces->dim, faces->cells + slot / corners * corners, (int)(slot % corners), node);
+}
+
+static enum status make_faces(const struct mesh *mesh, struct faces *faces, struct error *error)
+{
+    *faces = (struct faces){mesh->dim, mesh->cells, mesh->cell_count * (mesh->dim + 1), NULL};
+    RETURN_IF_ERROR(NEW_ARRAY(&faces->face, faces->count, error));
+    for (int64_t f = 0; f < faces->count; f++) {
+        int32_t node[3];
+        faces->face[f].item = f;
+        face_nodes(faces, f, node);
+        face_key(mesh->dim, node, faces->face[f].key);
+    }
+    keyed_sort(faces->count, faces->face);
+    return STATUS_OK;
+}
+
 /* The state while facets and sets are gathered. */
 struct gathering {
     struct mesh_draft *draft;
-    struct msh_faces faces;
+    struct faces faces;
     int64_t boundary_count; /* of the faces */
     int64_t *group_ptr;     /* group_count + 1: elements by group, in the order of the file */
     int32_t *group_idx;
@@ -18,10 +48,10 @@ struct gathering {
 };
 
 /* Whether the order of a face's nodes is an odd permutation of the ascending one. */
-static bool is_turned(const struct msh_faces *faces, int64_t face)
+static bool is_turned(const struct faces *faces, int64_t face)
 {
     int32_t node[3];
-    msh_face_nodes(faces, face, node);
+    face_nodes(faces, face, node);
     bool odd = node[0] > node[1];
     return faces->dim == 2 ? odd : odd ^ (node[0] > node[2]) ^ (node[1] > node[2]);
 }
@@ -30,7 +60,7 @@ static bool is_turned(const struct msh_faces *faces, int64_t face)
 static enum status count_boundary(struct gathering *g)
 {
     const struct mesh_draft *draft = g->draft;
-    const struct msh_faces *faces = &g->faces;
+    const struct faces *faces = &g->faces;
     for (int64_t f = 0, end; f < faces->count; f = end) {
         end = keyed_end(faces->count, faces->face, f);
         g->boundary_count += end == f + 1;
@@ -104,17 +134,14 @@ static enum status add_face(struct gathering *g, int32_t group, const int32_t no
 {
     struct mesh *mesh = g->draft->mesh;
     int dim = mesh->dim;
-    int sharing = 0;
-    int64_t face = -1;
-    bool known = node[0] >= 0 && node[1] >= 0 && (dim == 2 || node[2] >= 0);
-    if (known) {
-        face = msh_faces_find(&g->faces, node, &sharing);
-    }
-    if (sharing == 0) {
+    int32_t key[3];
+    face_key(dim, node, key);
+    int64_t face = key[0] >= 0 ? keyed_find(g->faces.count, g->faces.face, key) : -1;
+    if (face < 0) {
         tally->elsewhere++;
         return STATUS_OK;
     }
-    if (sharing > 1) {
+    if (keyed_end(g->faces.count, g->faces.face, face) > face + 1) {
         tally->interior++;
         enum status status = STATUS_OK;
         for (int k = 0; k < dim && status == STATUS_OK; k++) {
@@ -125,7 +152,7 @@ static enum status add_face(struct gathering *g, int32_t group, const int32_t no
     if (g->face_stamp[face] != group + 1) { /* the file may repeat it */
         g->face_stamp[face] = group + 1;
         tally->boundary++;
-        msh_face_nodes(&g->faces, face, &mesh->facets[mesh->facet_count * dim]);
+        face_nodes(&g->faces, face, &mesh->facets[mesh->facet_count * dim]);
         mesh->facet_set[mesh->facet_count++] = (int32_t)mesh->facet_sets.count;
     }
     return STATUS_OK;
@@ -220,7 +247,7 @@ enum status mesh_build_facets(struct mesh_draft *draft)
     enum status status = STATUS_OK;
     struct mesh *mesh = draft->mesh;
     struct gathering g = {.draft = draft};
-    TRY(msh_faces_make(&g.faces, mesh->dim, mesh->cell_count, mesh->cells, draft->error));
+    TRY(make_faces(mesh, &g.faces, draft->error));
     TRY(count_boundary(&g));
     TRY(sort_by_group(&g));
     TRY(NEW_ARRAY(&g.face_stamp, mesh->cell_count * (mesh->dim + 1), draft->error));
@@ -230,7 +257,6 @@ enum status mesh_build_facets(struct mesh_draft *draft)
     TRY(NEW_ARRAY(&mesh->set_ptr, draft->msh->group_count + 2, draft->error));
     TRY(gather_groups(&g));
 done:
-    msh_faces_free(&g.faces);
-    FREE_ALL(g.group_ptr, g.group_idx, g.face_stamp, g.node_stamp);
+    FREE_ALL(g.faces.face, g.group_ptr, g.group_idx, g.face_stamp, g.node_stamp);
     return status;
 }

@@ -1,3 +1,4 @@
+#include "base/keyed.h"
 #include "base/lists.h"
 #include "base/memory.h"
 #include "base/round_off.h"
