@@ -210,16 +210,17 @@ enum status stream_append(struct stream *stream, const char *name, enum element_
 }
 
 /* Replace the contents of a section; the arguments may be its old contents. */
-static enum status section_replace(struct section *section, enum element_type type, int64_t rows,
-                                   int64_t cols, const char *attributes, void *data, bool owned,
-                                   struct error *error)
+static enum status section_replace(const struct stream *stream, struct section *section,
+                                   enum element_type type, int64_t rows, int64_t cols, const char *attributes,
+                                   void *data, bool owned, struct error *error)
 {
     char *copy = strdup(attributes);
     if (copy == NULL) {
         return fail_memory(error, section->name);
     }
-    if (section->owned && section->data != data) {
-        free(section->data);
+    if (section->data != data) {
+        section_give_back(stream, section, true);
+        free(section->owned ? section->data : NULL);
     }
     free(section->attributes);
     section->type = type;
@@ -239,7 +240,7 @@ enum status stream_put(struct stream *stream, const char *name, enum element_typ
     bool data_is_here = section != NULL && section->owned && section->data == data;
     enum status status = section_validate(name, type, rows, cols, listed, error);
     if (status == STATUS_OK && section != NULL) {
-        status = section_replace(section, type, rows, cols, listed, data, owned, error);
+        status = section_replace(stream, section, type, rows, cols, listed, data, owned, error);
     } else if (status == STATUS_OK) {
         status = stream_append(stream, name, type, rows, cols, listed, &section, error);
         if (status == STATUS_OK) {
@@ -253,11 +254,12 @@ enum status stream_put(struct stream *stream, const char *name, enum element_typ
     return status;
 }
 
-void section_give_back(const struct stream *stream, const struct section *section)
+void section_give_back(const struct stream *stream, const struct section *section, bool for_good)
 {
     uintptr_t from = (uintptr_t)section->data, mapped = (uintptr_t)stream->mapping;
     size_t bytes = (size_t)(section->rows * section->cols) * element_size(section->type);
-    if (!section->owned && from >= mapped && from + bytes <= mapped + stream->mapping_size) {
+    if ((for_good || stream->is_file) && !section->owned && from >= mapped &&
+        from + bytes <= mapped + stream->mapping_size) {
         memory_give_back(section->data, bytes);
     }
 }
@@ -265,13 +267,13 @@ void section_give_back(const struct stream *stream, const struct section *sectio
 void stream_give_back(const struct stream *stream)
 {
     for (int64_t i = 0; i < stream->section_count; i++) {
-        section_give_back(stream, &stream->sections[i]);
+        section_give_back(stream, &stream->sections[i], false);
     }
 }
 
 static void remove_at(struct stream *stream, int64_t at)
 {
-    section_give_back(stream, &stream->sections[at]);
+    section_give_back(stream, &stream->sections[at], true);
     section_free(&stream->sections[at]);
     stream->section_count--;
     memmove(&stream->sections[at], &stream->sections[at + 1],

@@ -30,8 +30,9 @@ struct stream {
     int64_t section_count;
     char **provenance; /* "# @" lines without "# @ " and newline, oldest first */
     int64_t provenance_count;
-    void *mapping; /* the mapped input file, or NULL */
+    void *mapping; /* of the input, or NULL */
     size_t mapping_size;
+    bool is_file; /* the mapping is that of a file, else the only copy */
 };
 
 /* An empty stream. */
@@ -40,8 +41,8 @@ void stream_init(struct stream *stream);
 /* Release everything the stream owns; it becomes empty. */
 void stream_free(struct stream *stream);
 
-/* Read a whole stream from an open descriptor, which stays open. A regular file is mapped, and its binary
- * payloads are used in place. `name` is used in messages ("standard input", the file's name).
+/* Read a whole stream from an open descriptor, which stays open. A regular file is mapped; binary payloads
+ * are used in place. `name` is used in messages ("standard input", the file's name).
  * Errors: STATUS_INPUT for anything malformed, truncated, with a wrong CRC or without its end line;
  * STATUS_SYSTEM for read failures and memory. Nothing is allocated beyond a small multiple of the input read
  * so far. On failure the stream is empty. */

@@ -1,37 +1,9 @@
-/* Reading the rows of a section. The array grows with the data, so that a header alone allocates little. */
+/* Reading the rows of a section that are text. */
 #include "io/stream/stream_private.h"
 
 #include "base/memory.h"
 
-#include <stdlib.h>
 #include <string.h>
-
-/* The array of a section while it grows. */
-struct payload {
-    char *data;     /* from array_new */
-    int64_t room;   /* elements allocated */
-    int64_t filled; /* elements present */
-    int64_t total;  /* elements announced */
-    size_t size;    /* bytes of one */
-};
-
-static enum status payload_grow(struct payload *payload, struct error *error)
-{
-    int64_t first = (int64_t)(4 * BLOCK_SIZE / payload->size);
-    int64_t room = payload->room == 0 ? first : 2 * payload->room;
-    room = room < payload->total ? room : payload->total;
-    char *grown = array_new(room, payload->size);
-    if (grown == NULL) {
-        return fail_memory(error, "payload");
-    }
-    if (payload->filled > 0) {
-        memcpy(grown, payload->data, (size_t)payload->filled * payload->size);
-    }
-    free(payload->data);
-    payload->data = grown;
-    payload->room = room;
-    return STATUS_OK;
-}
 
 enum status fail_short(const struct section *section, int64_t row, struct error *error)
 {
@@ -99,15 +71,6 @@ static void skip_blanks(struct input *input)
     }
 }
 
-/* Make a whole number and the blanks around it available. */
-static enum status refill(struct input *input, struct error *error)
-{
-    if (input->end - input->at >= 2 * NUMBER_LIMIT || input->ended) {
-        return STATUS_OK;
-    }
-    return input_fill(input, 2 * NUMBER_LIMIT, error);
-}
-
 /* Read the end of a line of text: blanks, then the newline. */
 static enum status row_end(struct input *input, const struct section *section, int64_t row,
                            struct error *error)
@@ -129,65 +92,39 @@ static enum status row_end(struct input *input, const struct section *section, i
 }
 
 static enum status text_row(struct input *input, const struct section *section, int64_t row,
-                            struct payload *payload, struct error *error)
+                            struct error *error)
 {
     for (int64_t column = 0; column < section->cols; column++) {
-        if (payload->filled == payload->room) {
-            RETURN_IF_ERROR(payload_grow(payload, error));
-        }
-        RETURN_IF_ERROR(refill(input, error));
         skip_blanks(input);
         const char *behind =
-            parse_element(section->type, input->at, input->end, payload->data, payload->filled);
+            parse_element(section->type, input->at, input->end, section->data, row * section->cols + column);
         if (behind == NULL) {
             return fail_word(input, section, row, column, error);
         }
         input->at = behind;
-        payload->filled++;
     }
-    RETURN_IF_ERROR(refill(input, error));
     return row_end(input, section, row, error);
 }
 
 enum status payload_read_text(struct input *input, struct section *section, struct error *error)
 {
-    struct payload payload = {.total = section->rows * section->cols, .size = element_size(section->type)};
-    enum status status = STATUS_OK;
-    TRY(payload_grow(&payload, error));
+    /* A number takes a byte and another one behind it: more than this the input does not hold. */
+    int64_t total = section->rows * section->cols, most = (input->end - input->at) / 2 + 1;
+    section->data = array_new(total < most ? total : most, element_size(section->type));
+    section->owned = true;
+    if (section->data == NULL) {
+        return fail_memory(error, "payload");
+    }
     for (int64_t row = 0; row < section->rows; row++) {
-        TRY(text_row(input, section, row, &payload, error));
+        RETURN_IF_ERROR(text_row(input, section, row, error));
     }
     for (int64_t blank = 0; blank < 2; blank++) {
-        TRY(refill(input, error));
         skip_blanks(input);
         if (input->at < input->end && *input->at != '\n' && *input->at != '\r') {
-            TRY(fail(error, STATUS_INPUT, "%s: more than %lld rows, or not two blank lines behind them",
-                     section->name, (long long)section->rows));
+            return fail(error, STATUS_INPUT, "%s: more than %lld rows, or not two blank lines behind them",
+                        section->name, (long long)section->rows);
         }
-        TRY(row_end(input, section, section->rows, error));
+        RETURN_IF_ERROR(row_end(input, section, section->rows, error));
     }
-done:
-    section->data = payload.data;
-    section->owned = true;
-    return status;
-}
-
-enum status payload_read_binary(struct input *input, struct section *section, struct error *error)
-{
-    struct payload payload = {.total = section->rows * section->cols, .size = element_size(section->type)};
-    enum status status = STATUS_OK;
-    do {
-        TRY(payload_grow(&payload, error));
-        size_t got;
-        size_t wanted = (size_t)(payload.room - payload.filled) * payload.size;
-        TRY(input_copy(input, payload.data + (size_t)payload.filled * payload.size, wanted, &got, error));
-        payload.filled += (int64_t)(got / payload.size);
-        if (got < wanted) {
-            TRY(fail_short(section, payload.filled / section->cols, error));
-        }
-    } while (payload.filled < payload.total);
-done:
-    section->data = payload.data;
-    section->owned = true;
-    return status;
+    return STATUS_OK;
 }

@@ -27,44 +27,29 @@ MUST_CHECK enum status stream_append(struct stream *stream, const char *name, en
                                      int64_t rows, int64_t cols, const char *attributes,
                                      struct section **section, struct error *error);
 
-/* stream.c: release the pages of a section that is in the mapped input; they are read again when needed. */
-void section_give_back(const struct stream *stream, const struct section *section);
+/* stream.c: release the pages of a section that is in the mapping: those of a file, which are read again when
+ * needed, or `for_good` all. */
+void section_give_back(const struct stream *stream, const struct section *section, bool for_good);
 
 /* stream.c: append a copy of a provenance line. */
 MUST_CHECK enum status stream_append_provenance(struct stream *stream, const char *line, size_t length,
                                                 struct error *error);
 
-/* stream_input.c: bytes of the stream in order, from a mapping or through a block buffer. */
+#define FIRST_LINE "# mts 1\n"
+
+/* stream_input.c: bytes of the stream in order; its mapping holds them all. */
 struct input {
-    int descriptor;
-    const char *at;    /* the next byte */
-    const char *end;   /* behind the last byte at hand */
-    const char *start; /* a byte at hand or passed, with the offset start_offset in the stream */
-    int64_t start_offset;
-    char *buffer; /* block buffer of `capacity` bytes, or NULL when the whole input is mapped */
-    size_t capacity;
-    bool ended; /* there is nothing behind `end` */
+    const char *start, *at, *end; /* the first byte, the next one, behind the last one */
 };
 
-/* Map a regular file standing at its beginning (the mapping then belongs to `stream`) or prepare to read. */
+/* Map a regular file that is at its beginning, or read what there is; of what does not begin as a stream only
+ * the beginning. */
 MUST_CHECK enum status input_open(struct input *input, struct stream *stream, int descriptor,
                                   struct error *error);
-void input_close(struct input *input);
 
-/* Make `wanted` bytes available at input->at, or all that remain. Earlier pointers into the input become
- * invalid. */
-MUST_CHECK enum status input_fill(struct input *input, size_t wanted, struct error *error);
-
-/* The next line, without its newline, which must exist. `line` is valid until the next call. */
+/* The next line, without its newline, which must exist. */
 MUST_CHECK enum status input_line(struct input *input, const char **line, size_t *length,
                                   struct error *error);
-
-/* Copy up to `size` bytes; *got < size only at the end of the input. */
-MUST_CHECK enum status input_copy(struct input *input, void *destination, size_t size, size_t *got,
-                                  struct error *error);
-
-/* Offset of input->at from the start of the stream. */
-int64_t input_offset(const struct input *input);
 
 /* Whether a line of `length` bytes, not zero-terminated, starts with a prefix. */
 static inline bool starts_with(const char *line, size_t length, const char *prefix)
@@ -88,10 +73,9 @@ MUST_CHECK enum status header_parse(const char *line, size_t length, struct head
                                     struct error *error);
 void header_free(struct header *header);
 
-/* stream_payload.c: read rows of text and the two blank lines behind, or binary values that are not mapped.
- * The section owns what was read, also on failure. */
+/* stream_payload.c: read rows of text and the two blank lines behind. The section owns what was read, also on
+ * failure. */
 MUST_CHECK enum status payload_read_text(struct input *input, struct section *section, struct error *error);
-MUST_CHECK enum status payload_read_binary(struct input *input, struct section *section, struct error *error);
 
 /* stream_payload.c: the error of an input that ends in this row. */
 enum status fail_short(const struct section *section, int64_t row, struct error *error);

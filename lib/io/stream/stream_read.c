@@ -6,6 +6,7 @@
 
 #include <locale.h>
 #include <string.h>
+#include <sys/mman.h>
 #include <zlib.h>
 
 struct reader {
@@ -55,14 +56,13 @@ static enum status fail_first_line(const char *line, size_t length, struct error
 static enum status read_first_line(struct reader *reader, struct error *error)
 {
     struct input *input = &reader->input;
-    static const char expected[] = "# mts 1\n";
-    RETURN_IF_ERROR(input_fill(input, 64, error));
+    static const char expected[] = FIRST_LINE;
     size_t held = (size_t)(input->end - input->at);
     if (held == 0) {
         return fail(error, STATUS_INPUT, "empty: no stream arrived (did an earlier stage fail?)");
     }
     if (!starts_with(input->at, held, expected)) {
-        if (input->ended && held < strlen(expected) && memcmp(input->at, expected, held) == 0) {
+        if (held < strlen(expected) && memcmp(input->at, expected, held) == 0) {
             return fail(error, STATUS_INPUT, "cut short in its first line (did an earlier stage fail?)");
         }
         size_t shown = held < 64 ? held : 64;
@@ -97,7 +97,6 @@ static enum status read_crc_line(struct reader *reader, const struct section *se
     enum { PREFIX = sizeof prefix - 1, SIZE = PREFIX + 8 + 1 };
     struct input *input = &reader->input;
     uLong stated;
-    RETURN_IF_ERROR(input_fill(input, SIZE, error));
     if (input->end - input->at < SIZE) {
         return fail_short(section, section->rows, error);
     }
@@ -117,26 +116,20 @@ static enum status read_binary(struct reader *reader, struct section *section, u
                                struct error *error)
 {
     struct input *input = &reader->input;
-    int64_t count = section->rows * section->cols;
-    size_t bytes = (size_t)count * element_size(section->type);
+    int64_t count = section->rows * section->cols, offset = input->at - input->start;
+    size_t bytes = (size_t)count * element_size(section->type), held = (size_t)(input->end - input->at);
     reader->binary = true;
-    if (input_offset(input) % PAYLOAD_ALIGNMENT != 0) {
+    if (offset % PAYLOAD_ALIGNMENT != 0) {
         return fail(error, STATUS_INPUT, "%s: binary payload at offset %lld, not a multiple of %d: damaged",
-                    section->name, (long long)input_offset(input), PAYLOAD_ALIGNMENT);
+                    section->name, (long long)offset, PAYLOAD_ALIGNMENT);
     }
-    if (input->buffer != NULL) {
-        RETURN_IF_ERROR(payload_read_binary(input, section, error));
-    } else {
-        size_t held = (size_t)(input->end - input->at);
-        if (held < bytes) {
-            return fail_short(section, (int64_t)(held / element_size(section->type)) / section->cols, error);
-        }
-        section->data = (char *)reader->stream->mapping + (input->at - (char *)reader->stream->mapping);
-        section->owned = false;
-        input->at += bytes;
+    if (held < bytes) {
+        return fail_short(section, (int64_t)(held / element_size(section->type)) / section->cols, error);
     }
+    section->data = (char *)reader->stream->mapping + offset;
+    input->at += bytes;
     uLong crc = bytes > 0 ? crc32_z(header_crc, section->data, bytes) : header_crc;
-    section_give_back(reader->stream, section);
+    section_give_back(reader->stream, section, false);
     return read_crc_line(reader, section, crc, error);
 }
 
@@ -144,7 +137,6 @@ static enum status read_section(struct reader *reader, const char *line, size_t 
 {
     FREED_BY(header_free) struct header header = {0};
     struct section *section;
-    /* Computed here, as the line becomes invalid with the next access to the input. */
     uLong crc = crc32_z(0, (const Bytef *)line, length + 1);
     frame_count(reader, line, length + 1);
     RETURN_IF_ERROR(header_parse(line, length, &header, error));
@@ -189,11 +181,9 @@ static enum status read_end(struct reader *reader, const char *line, size_t leng
             return fail(error, STATUS_INPUT, "wrong crc32 of the header lines: damaged or edited");
         }
     }
-    enum status status = input_fill(&reader->input, 1, error);
-    if (status == STATUS_OK && reader->input.at != reader->input.end) {
-        status = fail(error, STATUS_INPUT, "goes on behind its end line: two streams in one?");
-    }
-    return status;
+    return reader->input.at == reader->input.end
+               ? STATUS_OK
+               : fail(error, STATUS_INPUT, "goes on behind its end line: two streams in one?");
 }
 
 /* Provenance is shown on terminals: no control characters but tabs. */
@@ -267,9 +257,12 @@ done:
         drop_torn(&reader);
         status = STATUS_OK;
     }
-    input_close(&reader.input);
     uselocale(previous);
     freelocale(c_locale);
+    if (!reader.binary && !stream->is_file && stream->mapping != NULL) { /* all is copied */
+        munmap(stream->mapping, stream->mapping_size);
+        stream->mapping = NULL;
+    }
     if (status != STATUS_OK) {
         stream_free(stream);
     }

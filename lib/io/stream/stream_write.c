@@ -199,7 +199,7 @@ enum status stream_writer_put(struct stream_writer *writer, const struct stream 
     RETURN_IF_ERROR(put_header(writer, section, &crc, error));
     RETURN_IF_ERROR(writer->text ? put_payload_text(writer, section, error)
                                  : put_payload_binary(writer, section, crc, error));
-    section_give_back(stream, section);
+    section_give_back(stream, section, false);
     writer->section_count++;
     return STATUS_OK;
 }
