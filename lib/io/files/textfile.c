@@ -27,31 +27,6 @@ static enum status check_kind(const char *path, struct error *error)
     return STATUS_OK;
 }
 
-static enum status read_all(const char *path, int descriptor, size_t most, struct textfile *file,
-                            struct error *error)
-{
-    size_t capacity = 0;
-    for (;;) {
-        size_t got;
-        if (file->size + 1 >= capacity) {
-            capacity = capacity == 0 ? 65536 : 2 * capacity;
-            RETURN_IF_ERROR(RESIZE_ARRAY(&file->text, (int64_t)capacity, error));
-        }
-        RETURN_IF_ERROR(fail_in(
-            error,
-            descriptor_read(descriptor, file->text + file->size, capacity - file->size - 1, &got, error),
-            "%s", path));
-        if (got == 0) {
-            file->text[file->size] = '\0';
-            return STATUS_OK;
-        }
-        file->size += got;
-        if (file->size > most) {
-            return fail(error, STATUS_INPUT, "%s: larger than %zu bytes", path, most);
-        }
-    }
-}
-
 enum status textfile_check(const char *path, const struct textfile *file, struct error *error)
 {
     const unsigned char *bytes = (const unsigned char *)file->text;
@@ -85,7 +60,11 @@ enum status bytefile_read(const char *path, size_t most, struct textfile *file, 
     if (descriptor < 0) {
         return fail(error, STATUS_SYSTEM, "%s: %s", path, strerror(errno));
     }
-    RETURN_IF_ERROR(read_all(path, descriptor, most, file, error));
+    RETURN_IF_ERROR(fail_in(
+        error, descriptor_read_all(descriptor, most, NULL, &file->text, &file->size, error), "%s", path));
+    if (file->size > most) {
+        return fail(error, STATUS_INPUT, "%s: larger than %zu bytes", path, most);
+    }
     return file->size > 0 ? STATUS_OK : fail(error, STATUS_INPUT, "%s: is empty", path);
 }
 

@@ -41,7 +41,12 @@ void nifti_get(const struct nifti_type *type, const unsigned char *bytes, bool s
 /* The bytes of a number, little-endian: rounded to what the type can hold, NaN to 0 in integers. */
 void nifti_put(const struct nifti_type *type, double value, unsigned char *bytes);
 
-struct image_source;
+/* The bytes of a file, out of gzip, with ROOM_BEHIND more behind them. */
+struct image_bytes {
+    unsigned char *bytes; /* size */
+    size_t size, at;      /* at: those before have been taken */
+    bool was_packed;
+};
 
 /* How the values are stored. */
 enum image_encoding { IMAGE_RAW, IMAGE_PACKED /* by gzip or zlib */, IMAGE_ASCII };
@@ -58,19 +63,18 @@ struct image_layout {
     char data_file[256]; /* in the folder of the header or below; "": they follow the header */
 };
 
-/* Read a header whose first four bytes have been read: sizes, components, place, and the layout of the
+/* Read a header: sizes, components, place, and the layout of the
  * values. STATUS_INPUT, with the key, for what is not read or contradicts itself. */
-MUST_CHECK enum status nrrd_header(struct image_source *source, struct image *image,
-                                   struct image_layout *layout, struct error *error);
-MUST_CHECK enum status metaimage_header(struct image_source *source, const unsigned char begin[4],
-                                        struct image *image, struct image_layout *layout,
-                                        struct error *error);
+MUST_CHECK enum status nrrd_header(struct image_bytes *file, struct image *image, struct image_layout *layout,
+                                   struct error *error);
+MUST_CHECK enum status metaimage_header(struct image_bytes *file, struct image *image,
+                                        struct image_layout *layout, struct error *error);
 
 /* Whether these are the first bytes of a MetaImage header. */
 bool metaimage_begins(const unsigned char bytes[4]);
 
 /* Read the values of an image whose sizes and scaling are set, and check that nothing follows them. */
-MUST_CHECK enum status image_values_read(struct image_source *source, const struct image_layout *layout,
+MUST_CHECK enum status image_values_read(struct image_bytes *file, const struct image_layout *layout,
                                          struct image *image, struct error *error);
 
 /* Of an image with segments, make one layer of labels: each layer's own, or of several layers the numbers of
@@ -112,26 +116,10 @@ void image_describe(struct image *image, const char *text);
  * not orthogonal. */
 bool nifti_quaternion(double matrix[3][4], double quatern[3], double pixdim[4]);
 
-/* The bytes of a file, compressed or not. zlib's gzread is not used: it accepts a file without its checksum
- * if the data end with a block. */
-struct image_source {
-    int descriptor;
-    bool gzip, ended; /* no more input */
-    bool complete;    /* a member of the gzip file has ended, its checksum right */
-    z_stream stream;  /* its next_in and avail_in: input that has not been taken */
-    int64_t taken;    /* bytes so far, after decompression */
-    unsigned char buffer[1 << 15];
-};
+/* Read a file out of gzip; of what is no image, unless `any` is wanted, only the beginning. */
+MUST_CHECK enum status image_bytes_read(int descriptor, bool any, struct image_bytes *file,
+                                        struct error *error);
+void image_bytes_free(struct image_bytes *file);
 
-/* Begin with an open descriptor, which stays open. */
-MUST_CHECK enum status image_source_open(struct image_source *source, int descriptor, struct error *error);
-void image_source_close(struct image_source *source);
-
-/* What follows is compressed by gzip or zlib, up to the end. STATUS_INPUT in a file that is compressed
- * itself.
- */
-MUST_CHECK enum status image_source_unpack(struct image_source *source, struct error *error);
-
-/* Take `size` bytes, or *got fewer at the end of a whole file. */
-MUST_CHECK enum status image_source_take(struct image_source *source, void *bytes, size_t size, size_t *got,
-                                         struct error *error);
+/* What follows is compressed by gzip or zlib: keep what it holds. */
+MUST_CHECK enum status image_bytes_unpack(struct image_bytes *file, struct error *error);

@@ -1,4 +1,4 @@
-/* Reading images: the header is checked before it is used, and memory grows with the data. libnifti is
+/* Reading images: the header is checked before it is used. libnifti is
  * not used: version 3.0.1 accepts a compressed file without checksum and a header with fewer voxels than
  * there are, and it cannot read a pipe. */
 #include "io/image/text_header.h"
@@ -51,31 +51,21 @@ static enum status check_magic(const unsigned char *bytes, int version, bool *pa
                         : fail(error, STATUS_INPUT, "header: no mark of NIfTI-2: damaged");
 }
 
-/* Read and decode the header, whose first `got` bytes, at most 4, have been read. */
-static enum status read_header(struct image_source *source, unsigned char bytes[NIFTI2_HEADER], size_t got,
-                               struct nifti *header, struct image *image, struct error *error)
+/* Take and decode the header. */
+static enum status read_header(struct image_bytes *file, struct nifti *header, struct image *image,
+                               struct error *error)
 {
-    size_t more;
-    bool swapped = false;
-    if (got == 4) {
-        RETURN_IF_ERROR(image_source_take(source, bytes + got, NIFTI1_HEADER - got, &more, error));
-        got += more;
-    }
-    int version = got >= 4 ? nifti_version(bytes, &swapped) : 0;
+    bool swapped = false, pair;
+    int version = file->size >= 4 ? nifti_version(file->bytes, &swapped) : 0;
     if (version == 0) {
-        return fail_foreign(bytes, got, error);
+        return fail_foreign(file->bytes, file->size, error);
     }
-    size_t size = version == 1 ? NIFTI1_HEADER : NIFTI2_HEADER;
-    if (got == NIFTI1_HEADER && size > got) {
-        RETURN_IF_ERROR(image_source_take(source, bytes + got, size - got, &more, error));
-        got += more;
+    file->at = version == 1 ? NIFTI1_HEADER : NIFTI2_HEADER;
+    if (file->size < file->at) {
+        return fail(error, STATUS_INPUT, "cut short: %zu bytes of a header of %zu", file->size, file->at);
     }
-    if (got < size) {
-        return fail(error, STATUS_INPUT, "cut short: %zu bytes of a header of %zu", got, size);
-    }
-    bool pair;
-    RETURN_IF_ERROR(check_magic(bytes, version, &pair, error));
-    nifti_decode(bytes, version, swapped, header, image);
+    RETURN_IF_ERROR(check_magic(file->bytes, version, &pair, error));
+    nifti_decode(file->bytes, version, swapped, header, image);
     header->pair = pair;
     return STATUS_OK;
 }
@@ -197,29 +187,26 @@ static enum status open_partner(const char *partner, size_t folder, int *descrip
 static enum status read_partner(const char *name, const struct image_layout *layout, struct image *image,
                                 struct error *error)
 {
-    struct image_source source;
+    FREED_BY(image_bytes_free) struct image_bytes file = {0};
     size_t folder = strrchr(name, '/') != NULL ? (size_t)(strrchr(name, '/') + 1 - name) : 0;
     NEW_SCRATCH(char, partner, (int64_t)(folder + sizeof layout->data_file), error);
     memcpy(partner, name, folder);
     memcpy(partner + folder, layout->data_file, sizeof layout->data_file);
     FREED_BY(descriptor_close) int descriptor = -1;
     RETURN_IF_ERROR(open_partner(partner, folder, &descriptor, error));
-    enum status status = image_source_open(&source, descriptor, error);
+    enum status status = image_bytes_read(descriptor, true, &file, error);
     if (status == STATUS_OK) {
-        status = image_values_read(&source, layout, image, error);
+        status = image_values_read(&file, layout, image, error);
     }
-    image_source_close(&source);
     return fail_in(error, status, "its data, %s", partner);
 }
 
-/* Read a NIfTI header, whose first `got` bytes, at most 4, have been read. */
-static enum status nifti_header(struct image_source *source, const char *name,
-                                unsigned char bytes[NIFTI2_HEADER], size_t got, struct image *image,
+static enum status nifti_header(struct image_bytes *file, const char *name, struct image *image,
                                 struct image_layout *layout, struct error *error)
 {
     struct nifti header;
-    RETURN_IF_ERROR(read_header(source, bytes, got, &header, image, error));
-    RETURN_IF_ERROR(check_header(&header, source->taken, image, layout, error));
+    RETURN_IF_ERROR(read_header(file, &header, image, error));
+    RETURN_IF_ERROR(check_header(&header, (int64_t)file->at, image, layout, error));
     RETURN_IF_ERROR(nifti_space(&header, image, error));
     return header.pair ? name_partner(name, layout, error) : STATUS_OK;
 }
@@ -237,41 +224,37 @@ static enum status check_detached(const struct image *image, const struct image_
                       "or .mhd");
 }
 
-static enum status read_source(struct image_source *source, const char *name, struct image *image,
-                               struct error *error)
+static enum status read_file(struct image_bytes *file, const char *name, struct image *image,
+                             struct error *error)
 {
-    unsigned char bytes[NIFTI2_HEADER] = {0};
     struct image_layout layout = {0};
-    size_t got;
     image->slope = 1;
     image->version = 1;
-    RETURN_IF_ERROR(image_source_take(source, bytes, 4, &got, error));
-    if (memcmp(bytes, "NRRD", 4) == 0) {
+    if (file->size >= 4 && memcmp(file->bytes, "NRRD", 4) == 0) {
         image->format = IMAGE_NRRD;
-        RETURN_IF_ERROR(nrrd_header(source, image, &layout, error));
-    } else if (metaimage_begins(bytes)) {
+        RETURN_IF_ERROR(nrrd_header(file, image, &layout, error));
+    } else if (file->size >= 4 && metaimage_begins(file->bytes)) {
         image->format = IMAGE_METAIMAGE;
-        RETURN_IF_ERROR(metaimage_header(source, bytes, image, &layout, error));
+        RETURN_IF_ERROR(metaimage_header(file, image, &layout, error));
     } else {
-        RETURN_IF_ERROR(nifti_header(source, name, bytes, got, image, &layout, error));
+        RETURN_IF_ERROR(nifti_header(file, name, image, &layout, error));
     }
     if (layout.skip_bytes < 0 && layout.encoding != IMAGE_RAW) {
         return fail(error, STATUS_INPUT, "header: a skip of -1 goes with raw data only");
     }
     RETURN_IF_ERROR(check_detached(image, &layout, name, error));
     return layout.data_file[0] != '\0' ? read_partner(name, &layout, image, error)
-                                       : image_values_read(source, &layout, image, error);
+                                       : image_values_read(file, &layout, image, error);
 }
 
 enum status image_read_from(struct image *image, int descriptor, const char *name, struct error *error)
 {
-    struct image_source source;
+    FREED_BY(image_bytes_free) struct image_bytes file = {0};
     *image = (struct image){0};
-    enum status status = image_source_open(&source, descriptor, error);
+    enum status status = image_bytes_read(descriptor, false, &file, error);
     if (status == STATUS_OK) {
-        status = read_source(&source, name, image, error);
+        status = read_file(&file, name, image, error);
     }
-    image_source_close(&source);
     if (status != STATUS_OK) {
         image_free(image);
     }

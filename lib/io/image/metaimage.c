@@ -130,15 +130,14 @@ static enum status place(const struct metaimage *meta, const struct text_header 
     return image_place(image, matrix, "TransformMatrix and ElementSpacing", error);
 }
 
-enum status metaimage_header(struct image_source *source, const unsigned char begin[4], struct image *image,
-                             struct image_layout *layout, struct error *error)
+enum status metaimage_header(struct image_bytes *file, struct image *image, struct image_layout *layout,
+                             struct error *error)
 {
-    struct text_header header = {.source = source, .separator = '=', .begun = 4};
+    struct text_header header = {.file = file, .separator = '='};
     struct metaimage meta = {
         .image = image, .layout = {.together = true}, .spacing = {1, 1, 1}, .channels = 1};
     header.dimension = &meta.dimension;
     header.types = metaimage_types;
-    memcpy(header.line, begin, 4);
     for (;;) {
         RETURN_IF_ERROR(header_next(&header, error));
         if (header.key == NULL) {

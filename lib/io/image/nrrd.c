@@ -327,10 +327,10 @@ static enum status check(const struct nrrd *nrrd, const struct text_header *head
     return STATUS_OK;
 }
 
-enum status nrrd_header(struct image_source *source, struct image *image, struct image_layout *layout,
+enum status nrrd_header(struct image_bytes *file, struct image *image, struct image_layout *layout,
                         struct error *error)
 {
-    struct text_header header = {.source = source, .separator = ':', .line = "NRRD", .begun = 4};
+    struct text_header header = {.file = file, .separator = ':'};
     struct nrrd nrrd = {.image = image,
                         .sign = {1, 1, 1},
                         .spacing = {1, 1, 1, 1},

@@ -8,27 +8,22 @@
 
 enum status header_line(struct text_header *header, struct error *error)
 {
-    char *line = header->line;
-    size_t length = header->begun, got = 1;
-    header->begun = 0;
-    for (;; length++) {
-        RETURN_IF_ERROR(image_source_take(header->source, line + length, 1, &got, error));
-        if (got == 0 || line[length] == '\n') {
-            break;
-        }
-        if (line[length] == '\0' || length == HEADER_LINE - 2) {
-            return fail(error, STATUS_INPUT, "header: damaged: %s",
-                        line[length] == '\0' ? "a byte of value 0" : "a line of more than 64 KiB");
-        }
+    struct image_bytes *file = header->file;
+    char *line = (char *)file->bytes + file->at;
+    size_t left = file->size - file->at;
+    const char *newline = memchr(line, '\n', left);
+    size_t length = newline != NULL ? (size_t)(newline - line) : left;
+    header->line = line;
+    header->cut = newline == NULL;
+    file->at += length + (newline != NULL);
+    if (memchr(line, '\0', length) != NULL) {
+        return fail(error, STATUS_INPUT, "header: damaged: a byte of value 0");
     }
-    header->cut = got == 0;
     while (length > 0 && strchr(" \t\r", line[length - 1]) != NULL) {
         length--;
     }
     line[length] = '\0';
-    return header->source->taken <= HEADER_BYTES
-               ? STATUS_OK
-               : fail(error, STATUS_INPUT, "header: damaged: more than 4 MiB");
+    return STATUS_OK;
 }
 
 enum status header_next(struct text_header *header, struct error *error)

@@ -6,19 +6,16 @@
 
 #include <stdio.h>
 
-enum { HEADER_LINE = 1 << 16, HEADER_BYTES = 1 << 22 };
-
 struct header_type;
 
 /* A header that is read line by line. */
 struct text_header {
-    struct image_source *source;
-    char separator; /* ':' or '=' */
-    char line[HEADER_LINE];
-    size_t begun;             /* bytes of the next line that line[] holds already */
+    struct image_bytes *file;
+    char separator;           /* ':' or '=' */
+    char *line;               /* in the file */
     const int64_t *dimension; /* of the image, as the header gives it; 0: not yet */
     const struct header_type *types;
-    char *key; /* of the field read last, in line[]; NULL: the header has ended */
+    char *key; /* of the field read last; NULL: the header has ended */
     char *value;
     bool is_pair;      /* it is KEY:=VALUE */
     bool cut;          /* the file has ended without an empty line */
@@ -26,8 +23,7 @@ struct text_header {
     char unknown[200]; /* keys that are not in it, ", " before each */
 };
 
-/* Read a line into header->line, without its end and trailing blanks. STATUS_INPUT for a NUL, a line of 64
- * KiB and a header of more than 4 MiB. */
+/* Read a line into header->line, without its end and trailing blanks. STATUS_INPUT for a NUL. */
 MUST_CHECK enum status header_line(struct text_header *header, struct error *error);
 
 /* Read the next field; comment lines of NRRD are skipped. */

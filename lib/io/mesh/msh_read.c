@@ -262,21 +262,9 @@ enum status msh_parse(struct msh *msh, const char *bytes, size_t size, const cha
     return reader.status;
 }
 
-/* ---- bytes ---- */
-
-/* Read to the end; only the first bytes if they do not begin a mesh of a known format. */
-static enum status read_all(int descriptor, char **bytes, size_t *size, struct error *error)
+static bool goes_on(const char *bytes, size_t size)
 {
-    int64_t room = 0;
-    for (;;) {
-        size_t got;
-        RETURN_IF_ERROR(GROW_ARRAY(bytes, (int64_t)*size + 65536, &room, error));
-        RETURN_IF_ERROR(descriptor_read(descriptor, *bytes + *size, (size_t)room - *size, &got, error));
-        *size += got;
-        if (got == 0 || (*size >= HEAD_SIZE && find_format(*bytes, *size) == NULL)) {
-            return STATUS_OK;
-        }
-    }
+    return find_format(bytes, size) != NULL;
 }
 
 enum status msh_read(struct msh *msh, int descriptor, const char *name, const char *region_array,
@@ -285,7 +273,7 @@ enum status msh_read(struct msh *msh, int descriptor, const char *name, const ch
     SCRATCH char *bytes = NULL;
     size_t size = 0;
     *msh = (struct msh){0};
-    enum status status = read_all(descriptor, &bytes, &size, error);
+    enum status status = descriptor_read_all(descriptor, SIZE_MAX, goes_on, &bytes, &size, error);
     if (status == STATUS_OK) {
         status = msh_parse(msh, bytes, size, region_array, error);
     }
