@@ -73,19 +73,20 @@ END
 @test "decks of Abaqus: errors name keyword and line" {
     faulty inp << 'END'
 solid|s/^2, 1.D0/2, nan/|*NODE: line 6: coordinate: 'nan' is not a finite number
-solid|s/^9, 0/6, 0/|nodes: line 11: node tag 6 stands twice
+solid|s/^9, 0.*/&\n6, 5, 5, 5/|nodes: line 12: node tag 6 stands twice
 solid|s/^7, 4, 5, 6, 9/7, 4, 5, 6/|*ELEMENT: line 18: element 7 ends after 3 of 4 nodes
 solid|s/^7, 4, 5, 6, 9/7, 4, 5, 6, 9, 1/|*ELEMENT: line 17: element 7 has more than 4 nodes
-solid|s/^7, 4, 5, 6, 9/7, 4, 5, 6, 8/|element 7 names the node 8, which is not in the file
+solid|s/^7, 4, 5, 6, 9/7, 4, 5, 6, 8/|*NSET: line 29: there is no node 8 as yet
 solid|s/type=C3D4/type=C3D7/|TYPE=C3D7: no element that is read
 solid|s/type=C3D4/type=SPRINGA/|TYPE=SPRINGA: no element that is read
 solid|s/type=C3D4/type=F3D4/|TYPE=F3D4: no element that is read
 solid|s/type=C3D4/type=C3D27/|TYPE=C3D27: no element that is read (C3D4, C3D20, CPE3, S3, ...; no beams, fluids, C3D27): take it out
-solid|s/^base, 9/base, 8/|sets: line 28: there is no node 8
-solid|s/^base, 9/upper, 9/|sets: line 28: there is no set 'upper' as yet
+solid|s/^base, 9/base, 8/|*NSET: line 28: there is no node 8 as yet
+solid|s/^base, 9/upper, 9/|*NSET: line 28: there is no set 'upper' as yet
 solid|s/^.NODE, /*NODE, INPUT=x, /|*NODE: line 4: other files are not read: put the lines of that file in its place
-solid|s/^base, 9/bass, 9/|sets: line 28: there is no set 'bass'
-solid|s/^Low, S3/Low, S6/|sets: line 31: a prism has no face 'S6'
+solid|s/^base, 9/bass, 9/|*NSET: line 28: there is no set 'bass' as yet
+solid|s/=top, MATERIAL/=tip, MATERIAL/|sets: line 38: there is no set 'tip'
+solid|s/^Low, S3/Low, S6/|*SURFACE: line 31: a prism has no face 'S6'
 solid|s/^Low, S3/Low/|*SURFACE: line 31: no face is named
 solid|s/^.NSET, NSET=some/*NSET, NSET=some, GENERATE/|*NSET: line 28: GENERATE
 solid|s/^.MATERIAL, NAME=m/*NSET, NSET=back, GENERATE\n8, 1, 1/|*NSET: line 40: GENERATE: 8 is behind 1

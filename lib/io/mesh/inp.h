@@ -9,22 +9,15 @@ struct inp_set {
     char kind; /* 'N', 'E' or 'S' */
     bool of_assembly;
     char name[INPUT_NAME + 1];
+    int64_t number;       /* from 1, of inp->sets */
     int64_t line;         /* where it is first defined; 0: it is only named by others */
+    bool of_elements;     /* *ELEMENT names it */
     bool of_surface;      /* elements: a surface uses it */
-    bool of_section;      /* elements: a section uses it */
-    int64_t head, tail;   /* the members: of inp->members, -1: none */
+    int64_t of_section;   /* elements: the line of a section that uses it, or 0 */
+    int64_t count, room;  /* of its members */
+    int64_t *member;      /* their places among nodes or elements */
     int64_t asked, found; /* members of its ranges: those that exist are found */
     int64_t key[4];       /* of its group of each dimension, 0: none yet */
-};
-
-/* What the deck adds to a set. */
-struct inp_item {
-    struct inp_set *set; /* NULL: a section, which makes a region of a set of elements */
-    enum { INP_TAG, INP_RANGE, INP_PLACES, INP_SET } how;
-    int64_t first, last, step; /* tags, of which those of a range need not exist; or places in the deck */
-    struct inp_set *members;
-    int64_t line;
-    char label[8]; /* of a face: "S1" */
 };
 
 struct inp {
@@ -43,16 +36,8 @@ struct inp {
 
     bool *is_shell; /* of each element */
     int64_t shell_room;
-    int64_t item_count, item_room, set_count, set_room, member_count, member_room;
-    struct inp_item *items;
-    struct inp_set **sets; /* in the order of the deck; of r->texts */
-    struct inp_member {
-        int64_t place, next;
-    } * members;
-    int64_t tried; /* members of ranges and sets */
-    struct msh_index elements;
-    struct inp_set **region;     /* of each element, or NULL */
-    int64_t overlaid, sectioned; /* elements in several sets, or those of sections; in sets of sections */
+    int64_t set_count, set_room, tried; /* tried: members of sets and ranges */
+    struct inp_set **sets;              /* in the order of the deck; of r->texts */
 };
 
 /* ---- inp_read.c ---- */
@@ -77,6 +62,12 @@ void inp_read_surface(struct inp *p);
 void inp_read_section(struct inp *p);
 
 /* ---- inp_groups.c ---- */
+
+/* Add a member to a set; the face of an element with that label ("S1") to a surface. Sets and surfaces must
+ * not grow out of proportion to the deck. */
+void inp_add_member(struct inp *p, struct inp_set *set, int64_t place);
+void inp_add_face(struct inp *p, struct inp_set *set, int64_t place, const char *label);
+void inp_try(struct inp *p);
 
 /* Make groups of sets, sections and surfaces: when all of the deck is read. */
 void inp_join_sets(struct inp *p);

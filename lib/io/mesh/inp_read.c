@@ -345,7 +345,7 @@ void inp_read(struct msh_reader *r)
         read_keyword(&p);
     }
     input_at(r, "nodes", 0);
-    msh_index_nodes(r);
+    msh_check_nodes(r);
     inp_join_sets(&p);
     inp_free_sets(&p);
 }

@@ -117,7 +117,6 @@ static void read_element(struct msh_reader *r, struct block *block)
 
 void msh_read_elements(struct msh_reader *r)
 {
-    FREED_BY(msh_index_free) struct msh_index tags = {0};
     bool blocked = r->msh4;
     int64_t found = 0;
     r->kind = "element";
@@ -145,6 +144,6 @@ void msh_read_elements(struct msh_reader *r)
                  (long long)count);
     }
     if (r->status == STATUS_OK) {
-        msh_index_elements(r, &tags);
+        msh_check_elements(r);
     }
 }

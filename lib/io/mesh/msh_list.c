@@ -6,11 +6,89 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* ---- finding them by their tags ---- */
+
+static void index_add(struct msh_reader *r, struct msh_index *index, int64_t tag, int64_t place)
+{
+    struct msh_run *last = index->count > 0 ? &index->run[index->count - 1] : NULL;
+    if (last != NULL && tag == last->tag + last->count && place == last->place + last->count) {
+        last->count++;
+        return;
+    }
+    index->unsorted = index->unsorted || (last != NULL && tag < last->tag + last->count);
+    MSH_GROW(r, &index->run, index->count + 1, &index->room);
+    if (r->status == STATUS_OK) {
+        index->run[index->count++] = (struct msh_run){tag, place, 1};
+    }
+}
+
+static void index_sort(struct msh_index *index)
+{
+    if (index->unsorted) {
+        qsort(index->run, (size_t)index->count, sizeof *index->run, compare_int64);
+        index->unsorted = false;
+    }
+}
+
+int64_t msh_index_from(struct msh_index *index, int64_t tag)
+{
+    int64_t low = 0, high = index->count;
+    index_sort(index);
+    while (low < high) {
+        int64_t middle = (low + high) / 2;
+        bool before = index->run[middle].tag + index->run[middle].count <= tag;
+        *(before ? &low : &high) = middle + before;
+    }
+    return low;
+}
+
+int64_t msh_index_find(struct msh_index *index, int64_t tag)
+{
+    int64_t at = msh_index_from(index, tag);
+    const struct msh_run *run = &index->run[at];
+    return at < index->count && tag >= run->tag ? run->place + tag - run->tag : -1;
+}
+
+/* The place of something whose tag stands before it, too; -1: there is none. */
+static int64_t find_twice(struct msh_index *index)
+{
+    index_sort(index);
+    for (int64_t i = 1; i < index->count; i++) {
+        const struct msh_run *a = &index->run[i - 1], *b = &index->run[i];
+        if (b->tag < a->tag + a->count) {
+            int64_t other = a->place + b->tag - a->tag;
+            return other > b->place ? other : b->place;
+        }
+    }
+    return -1;
+}
+
+void msh_check_nodes(struct msh_reader *r)
+{
+    int64_t again = find_twice(&r->nodes);
+    if (again >= 0) {
+        r->record = r->msh->nodes[again].record;
+        msh_fail(r, "node tag %lld stands twice", (long long)r->msh->nodes[again].tag);
+    }
+}
+
+void msh_check_elements(struct msh_reader *r)
+{
+    int64_t again = find_twice(&r->elements);
+    if (again >= 0) {
+        r->record = 0;
+        msh_fail(r, "element tag %lld stands twice", (long long)r->msh->elements[again].tag);
+    }
+}
+
+/* ---- adding them ---- */
+
 void msh_add_node(struct msh_reader *r, int64_t tag, const double x[3])
 {
     struct msh *msh = r->msh;
     MSH_GROW(r, &msh->nodes, msh->node_count + 1, &r->node_room);
     if (r->status == STATUS_OK) {
+        index_add(r, &r->nodes, tag, msh->node_count);
         msh->nodes[msh->node_count++] = (struct msh_node){tag, {x[0], x[1], x[2]}, r->record};
     }
 }
@@ -22,81 +100,14 @@ void msh_add_element(struct msh_reader *r, int64_t tag, int type, const int64_t 
     MSH_GROW(r, &msh->elements, msh->element_count + 1, &r->element_room);
     MSH_GROW(r, &r->corners, r->corner_count + count, &r->corner_room);
     if (r->status == STATUS_OK) {
+        if (tag != MSH_NO_TAG) {
+            index_add(r, &r->elements, tag, msh->element_count);
+        }
         msh->elements[msh->element_count++] =
             (struct msh_element){.tag = tag, .first = r->corner_count, .key = key, .type = (int8_t)type};
         memcpy(&r->corners[r->corner_count], node, (size_t)count * sizeof *node);
         r->corner_count += count;
     }
-}
-
-/* ---- finding them by their tags ---- */
-
-/* Index the tags, but MSH_NO_TAG, that begin `count` records of `size` bytes. Returns the place of one whose
- * tag stands before it, too; -1: there is none. */
-static int64_t make_index(struct msh_reader *r, struct msh_index *index, int64_t count, const void *records,
-                          size_t size)
-{
-    *index = (struct msh_index){0};
-    MSH_NEW(r, &index->sorted, count);
-    if (r->status != STATUS_OK) {
-        return -1;
-    }
-    for (int64_t i = 0; i < count; i++) {
-        struct msh_place *next = &index->sorted[index->count];
-        memcpy(&next->tag, (const char *)records + (size_t)i * size, sizeof(int64_t));
-        next->place = i;
-        index->count += next->tag != MSH_NO_TAG;
-    }
-    count = index->count;
-    qsort(index->sorted, (size_t)count, sizeof *index->sorted, compare_int64);
-    for (int64_t i = 1; i < count; i++) {
-        int64_t a = index->sorted[i - 1].place, b = index->sorted[i].place;
-        if (index->sorted[i].tag == index->sorted[i - 1].tag) {
-            return a > b ? a : b;
-        }
-    }
-    return -1;
-}
-
-void msh_index_nodes(struct msh_reader *r)
-{
-    const struct msh_node *nodes = r->msh->nodes;
-    if (r->status != STATUS_OK || r->nodes.sorted != NULL) {
-        return;
-    }
-    int64_t again = make_index(r, &r->nodes, r->msh->node_count, nodes, sizeof *nodes);
-    if (again >= 0) {
-        r->record = nodes[again].record;
-        msh_fail(r, "node tag %lld stands twice", (long long)nodes[again].tag);
-    }
-}
-
-void msh_index_elements(struct msh_reader *r, struct msh_index *index)
-{
-    const struct msh_element *elements = r->msh->elements;
-    int64_t again = make_index(r, index, r->msh->element_count, elements, sizeof *elements);
-    if (again >= 0) {
-        r->record = 0;
-        msh_fail(r, "element tag %lld stands twice", (long long)elements[again].tag);
-    }
-}
-
-int64_t msh_index_find(const struct msh_index *index, int64_t tag)
-{
-    int64_t near = index->count > 0 ? tag - index->sorted[0].tag : -1;
-    if (near >= 0 && near < index->count && index->sorted[near].tag == tag) { /* as if there were no gap */
-        return index->sorted[near].place;
-    }
-    struct msh_place key = {.tag = tag};
-    const struct msh_place *found =
-        bsearch(&key, index->sorted, (size_t)index->count, sizeof key, compare_int64);
-    return found != NULL ? found->place : -1;
-}
-
-void msh_index_free(struct msh_index *index)
-{
-    free(index->sorted);
-    *index = (struct msh_index){0};
 }
 
 /* ---- when all are there ---- */
@@ -125,7 +136,7 @@ void msh_finish_lists(struct msh_reader *r)
 {
     struct msh *msh = r->msh;
     int64_t tag = 0;
-    msh_index_nodes(r);
+    msh_check_nodes(r);
     r->section = "elements";
     r->record = 0;
     MSH_NEW(r, &msh->node_idx, r->corner_count);

@@ -87,5 +87,5 @@ void msh_read_nodes(struct msh_reader *r)
         msh_fail(r, "%lld nodes, not the %lld that the section's head says", (long long)block.first,
                  (long long)count);
     }
-    msh_index_nodes(r);
+    msh_check_nodes(r);
 }

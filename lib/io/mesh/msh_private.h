@@ -21,12 +21,13 @@
 /* Tags are of type int in MSH 2; in MSH 4 gmsh keeps most of them as int. */
 #define MSH_LARGEST_TAG INT32_MAX
 
-/* The place of each tag in the file. */
+/* The place of each tag, in runs in which both grow by one; ascending once it is asked. */
 struct msh_index {
-    int64_t count;
-    struct msh_place {
-        int64_t tag, place;
-    } * sorted; /* count, ascending */
+    int64_t count, room;
+    bool unsorted;
+    struct msh_run {
+        int64_t tag, place, count;
+    } * run;
 };
 
 /* A physical group's name in the file. */
@@ -69,7 +70,7 @@ struct msh_reader {
     bool has[MSH_SECTIONS];   /* the section was read to its end */
     int64_t node_room, element_room, corner_count, corner_room, name_room;
     int64_t *corners; /* corner_count: tags of the nodes of each element, from its `first` on */
-    struct msh_index nodes;
+    struct msh_index nodes, elements;
     int64_t name_count;
     struct msh_name *names;
     struct owned texts; /* those of names that are not in the file */
@@ -161,13 +162,13 @@ void msh_join_groups(struct msh_reader *reader);
 void msh_add_node(struct msh_reader *reader, int64_t tag, const double x[3]);
 void msh_add_element(struct msh_reader *reader, int64_t tag, int type, const int64_t node[], int64_t key);
 
-/* Index nodes, once all are there, or elements, by their tags; a repeated tag is a failure. */
-void msh_index_nodes(struct msh_reader *reader);
-void msh_index_elements(struct msh_reader *reader, struct msh_index *index);
-void msh_index_free(struct msh_index *index);
+/* A repeated tag is a failure. */
+void msh_check_nodes(struct msh_reader *reader);
+void msh_check_elements(struct msh_reader *reader);
 
-/* Place of `tag`, or -1. */
-int64_t msh_index_find(const struct msh_index *index, int64_t tag);
+/* Place of `tag`, or -1; the first run that does not end before it. */
+int64_t msh_index_find(struct msh_index *index, int64_t tag);
+int64_t msh_index_from(struct msh_index *index, int64_t tag);
 
 /* Find the nodes of all elements, and give tags to those without: before the groups are set. */
 void msh_finish_lists(struct msh_reader *reader);

@@ -252,10 +252,9 @@ enum status msh_parse(struct msh *msh, const char *bytes, size_t size, const cha
     if (reader.left_out[0] != '\0') {
         input_note(&reader, "what else is in the file is left out: %s", reader.left_out + 2);
     }
-    msh_index_free(&reader.nodes);
     owned_free(&reader.texts);
     tdestroy(reader.numbered, free);
-    FREE_ALL(reader.corners, reader.names, reader.entities);
+    FREE_ALL(reader.corners, reader.names, reader.entities, reader.nodes.run, reader.elements.run);
     if (reader.status != STATUS_OK) {
         msh_free(msh);
     }
