@@ -250,7 +250,7 @@ setup_file() {
 @test "units and spaces that cannot be" {
     scan=$BATS_FILE_TMPDIR/scan.nii.gz
     nifti change "$scan" far.nii far
-    refused 2 "no voxel of the image (x 492 to 567, y 492 to 567, z 492 to 567 mm) lies in the body (x 0 to 60, " warp far.nii u.dat
+    refused 2 "no voxel of the image (0.492 0.492 0.492 to 0.567 0.567 0.567 m) lies in the body (0 0 0 to 0.06 " warp far.nii u.dat
     # x to the left in one of the two
     cloud -d 3 -k regular -n 4 --box -0.06,0,0,0.06,0,0.06 > left.mts
     with_u left.mts 'print 0, 0, 0' > left.dat

@@ -86,7 +86,7 @@ static void report(const struct tool *tool, const struct mesh *mesh, bool verbos
     }
     TOOL_TRY(tool, cell_report_make(&cells, INFINITY, &cell_report, &error));
     tool_note(tool, "%lld nodes, %lld cells, box %s, %s %.4g %s, %d connected bod%s",
-              (long long)mesh->node_count, (long long)mesh->cell_count, cell_report_box(&box, text),
+              (long long)mesh->node_count, (long long)mesh->cell_count, box_text(&box, text),
               mesh->dim == 2 ? "area" : "volume", cell_report.volume, mesh->dim == 2 ? "m2" : "m3",
               cell_report.bodies, cell_report.bodies == 1 ? "y" : "ies");
     tool_note(tool, "quality of the cells: least %.2g, median %.2g", cell_report.least_median[0],

@@ -126,7 +126,7 @@ static enum status make_group(const struct request *request, enum group_kind kin
         struct box box = box_of(body->cells.dim, body->cells.node_count, body->cells.x);
         char place[128];
         return fail(error, STATUS_INPUT, "chooses none of %lld %s; the body's box is %s",
-                    (long long)items->count, plural(kind), cell_report_box(&box, place));
+                    (long long)items->count, plural(kind), box_text(&box, place));
     }
     return group_put(body, kind, name, chosen, error);
 }
@@ -253,7 +253,7 @@ static void report(const struct tool *tool, const struct group_body *body, enum 
         text_append(text, sizeof text, ", %s %.4g m%.0d", of_dim[region][dim - 2], size,
                     power == 1 ? 0 : power);
     }
-    text_append(text, sizeof text, ", box %s%s", cell_report_box(&box, place),
+    text_append(text, sizeof text, ", box %s%s", box_text(&box, place),
                 kind == GROUP_FACETS ? ", mean normal" : "");
     for (int k = 0; k < dim && kind == GROUP_FACETS; k++) {
         double share = size > 0 ? sum[k] / size : 0;

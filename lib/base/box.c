@@ -1,5 +1,6 @@
 #include "base/box.h"
 
+#include "base/status.h"
 #include "base/vector.h"
 
 struct box box_of(int dim, int64_t count, const double *x)
@@ -50,4 +51,15 @@ double box_side(const struct box *box)
 double box_diagonal(const struct box *box)
 {
     return vector_distance(box->dim, box->high, box->low);
+}
+
+const char *box_text(const struct box *box, char text[128])
+{
+    text[0] = '\0';
+    for (int k = 0; k < 2 * box->dim; k++) {
+        text_append(text, 128, "%s%.4g ", k == box->dim ? "to " : "",
+                    k < box->dim ? box->low[k] : box->high[k - box->dim]);
+    }
+    text_append(text, 128, "m");
+    return text;
 }

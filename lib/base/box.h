@@ -24,3 +24,6 @@ void box_add(struct box *box, int64_t count, const double *x);
 /* Its longest side, and its diagonal, in the units of x. */
 double box_side(const struct box *box);
 double box_diagonal(const struct box *box);
+
+/* "0 0 0 to 0.1 0.1 0.2 m", of a box in m; returns text. */
+const char *box_text(const struct box *box, char text[128]);

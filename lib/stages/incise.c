@@ -67,23 +67,6 @@ static enum status read_body(const struct stream *stream, struct cut_body *whole
 
 /* ---- the cut ---- */
 
-/* A box in the message of an error. */
-static const char *box_text(const struct box *box, char text[128])
-{
-    text[0] = '\0';
-    for (int end = 0; end < 2; end++) {
-        for (int a = 0; a < box->dim; a++) {
-            text_append(text, 128, "%s%.4g",
-                        a > 0     ? " "
-                        : end > 0 ? " to "
-                                  : "",
-                        end > 0 ? box->high[a] : box->low[a]);
-        }
-    }
-    text_append(text, 128, " m");
-    return text;
-}
-
 static enum status fail_outside(const struct cut_body *whole, struct error *error)
 {
     const struct blade *blade = whole->options->blade;

@@ -41,17 +41,6 @@ const char *cell_report_describe(const struct cells *cells, const struct poor_ce
     return text;
 }
 
-const char *cell_report_box(const struct box *box, char text[128])
-{
-    text[0] = '\0';
-    for (int k = 0; k < 2 * box->dim; k++) {
-        text_append(text, 128, "%s%.4g ", k == box->dim ? "to " : "",
-                    k < box->dim ? box->low[k] : box->high[k - box->dim]);
-    }
-    text_append(text, 128, "m");
-    return text;
-}
-
 enum status cell_report_hanging(const struct cells *cells, int64_t named_count, const int32_t *named,
                                 bool *parts, char said[512], struct error *error)
 {

@@ -29,9 +29,6 @@ MUST_CHECK enum status cell_report_make(const struct cells *cells, double bound,
 /* "quality 3.1e-05 at 0.01 0.02 0.03 m" of a poor cell. */
 const char *cell_report_describe(const struct cells *cells, const struct poor_cell *poor, char text[128]);
 
-/* "0 0 0 to 0.1 0.1 0.2 m" */
-const char *cell_report_box(const struct box *box, char text[128]);
-
 /* Tell nodes that hang on facets of other cells (hanging.h) into said[512]: "nodes on ...", or "". *parts:
  * whether one body parts there. */
 MUST_CHECK enum status cell_report_hanging(const struct cells *cells, int64_t named_count,

@@ -8,6 +8,7 @@
 #include <float.h>
 #include <math.h>
 #include <stdbool.h>
+#include <stdio.h>
 #include <string.h>
 #include <strings.h>
 
@@ -54,94 +55,72 @@ static enum status read_binary_stl(const char *path, const struct textfile *file
 
 /* The words of a text, with their lines. */
 struct words {
-    const char *path;
-    const char *at;
+    const char *path, *at;
     int64_t line;
+    char word[64]; /* "" at the end; a longer one is cut */
 };
 
-/* Move to the next word; returns its length, 0 at the end. */
-static size_t next_word(struct words *words, const char **word)
+/* Move to the next word; false at the end. */
+static bool next_word(struct words *words)
 {
-    size_t blanks;
-    while ((blanks = strspn(words->at, " \t\n")) > 0) {
-        for (; blanks > 0; blanks--) {
-            words->line += *words->at++ == '\n';
-        }
+    for (; *words->at != '\0' && strchr(" \t\n", *words->at) != NULL; words->at++) {
+        words->line += *words->at == '\n';
     }
-    *word = words->at;
-    words->at += strcspn(words->at, " \t\n");
-    return (size_t)(words->at - *word);
+    size_t length = strcspn(words->at, " \t\n");
+    snprintf(words->word, sizeof words->word, "%.*s", (int)(length < 64 ? length : 63), words->at);
+    words->at += length;
+    return length > 0;
 }
 
-static enum status expect(struct words *words, const char *expected, struct error *error)
+static enum status fail_word(const struct words *words, const char *what, struct error *error)
 {
-    const char *word;
-    size_t length = next_word(words, &word);
-    return length == strlen(expected) && strncmp(word, expected, length) == 0
-               ? STATUS_OK
-               : fail(error, STATUS_INPUT, "%s:%lld: '%.*s' instead of '%s'", words->path,
-                      (long long)words->line, (int)(length < 40 ? length : 40), word, expected);
+    return fail(error, STATUS_INPUT, "%s:%lld: '%.40s' %s", words->path, (long long)words->line, words->word,
+                what);
 }
 
-static enum status expect_number(struct words *words, double *value, struct error *error)
+static enum status read_vector(struct words *words, double x[3], struct error *error)
 {
-    const char *word;
-    size_t length = next_word(words, &word);
-    char copy[64] = "";
     struct error why;
-    memcpy(copy, word, length < sizeof copy ? length : sizeof copy - 1);
-    return length < sizeof copy && parse_double(copy, "", -DBL_MAX, DBL_MAX, value, &why) == STATUS_OK
-               ? STATUS_OK
-               : fail(error, STATUS_INPUT, "%s:%lld: '%s' is not a finite number", words->path,
-                      (long long)words->line, copy);
-}
-
-/* Read one facet, from `normal` to `endfacet`. */
-static enum status read_facet(struct words *words, double row[9], struct error *error)
-{
-    double normal[3];
-    RETURN_IF_ERROR(expect(words, "normal", error));
     for (int i = 0; i < 3; i++) {
-        RETURN_IF_ERROR(expect_number(words, &normal[i], error));
-    }
-    RETURN_IF_ERROR(expect(words, "outer", error));
-    RETURN_IF_ERROR(expect(words, "loop", error));
-    for (int corner = 0; corner < 3; corner++) {
-        RETURN_IF_ERROR(expect(words, "vertex", error));
-        for (int i = 0; i < 3; i++) {
-            RETURN_IF_ERROR(expect_number(words, &row[3 * corner + i], error));
+        if (!next_word(words) || parse_double(words->word, "", -DBL_MAX, DBL_MAX, &x[i], &why) != STATUS_OK) {
+            return fail_word(words, "is not a finite number", error);
         }
     }
-    RETURN_IF_ERROR(expect(words, "endloop", error));
-    return expect(words, "endfacet", error);
+    return STATUS_OK;
 }
 
-/* Read "solid NAME", facets, "endsolid NAME", once. */
+/* Read "solid NAME", facets, "endsolid NAME", once. Of a facet its vertices count. */
 static enum status read_ascii_stl(const char *path, const struct textfile *file, struct table *table,
                                   struct error *error)
 {
-    struct words words = {.path = path, .at = file->text, .line = 1};
-    int64_t room = 0;
-    const char *word;
-    size_t length;
-    RETURN_IF_ERROR(expect(&words, "solid", error));
-    words.at += strcspn(words.at, "\n"); /* the rest of the line is a name */
-    while ((length = next_word(&words, &word)) == 5 && strncmp(word, "facet", 5) == 0) {
-        double row[9];
-        int64_t line = words.line;
-        RETURN_IF_ERROR(read_facet(&words, row, error));
-        RETURN_IF_ERROR(table_append(table, row, line, &room, error));
+    static const char *const others[] = {"facet", "outer", "loop", "endloop"};
+    struct words words = {.path = path, .at = file->text + strcspn(file->text, "\n"), .line = 1};
+    int64_t room = 0, line = 1;
+    int vertices = 0;
+    double row[9], normal[3];
+    while (next_word(&words) && strcmp(words.word, "endsolid") != 0) {
+        bool known = false;
+        for (int i = 0; i < 4; i++) {
+            known = known || strcmp(words.word, others[i]) == 0;
+        }
+        if (strcmp(words.word, "normal") == 0) {
+            line = words.line;
+            RETURN_IF_ERROR(read_vector(&words, normal, error));
+        } else if (strcmp(words.word, "vertex") == 0 && vertices < 3) {
+            RETURN_IF_ERROR(read_vector(&words, row + 3 * vertices++, error));
+        } else if (strcmp(words.word, "endfacet") == 0 && vertices == 3) {
+            RETURN_IF_ERROR(table_append(table, row, line, &room, error));
+            vertices = 0;
+        } else if (!known) {
+            return fail_word(&words, "has no place here: a facet has three lines 'vertex X Y Z'", error);
+        }
     }
-    if (length != 8 || strncmp(word, "endsolid", 8) != 0) {
-        return fail(error, STATUS_INPUT, "%s:%lld: '%.*s' instead of 'facet' or 'endsolid': truncated?", path,
-                    (long long)words.line, (int)(length < 40 ? length : 40), word);
+    if (words.word[0] == '\0' || vertices > 0) {
+        return fail_word(&words, "instead of 'endfacet' or 'endsolid': truncated?", error);
     }
     words.at += strcspn(words.at, "\n");
-    if (next_word(&words, &word) > 0) {
-        return fail(error, STATUS_INPUT, "%s:%lld: text behind endsolid: one solid is read", path,
-                    (long long)words.line);
-    }
-    return STATUS_OK;
+    return next_word(&words) ? fail_word(&words, "is text behind endsolid: one solid is read", error)
+                             : STATUS_OK;
 }
 
 static enum status read_stl(const char *path, struct table *table, struct error *error)

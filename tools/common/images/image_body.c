@@ -129,22 +129,11 @@ static struct box image_box(const struct image *image)
     return box_of(3, 8, corner[0]);
 }
 
-static const char *box_text(const struct box *box, char text[160])
-{
-    text[0] = '\0';
-    for (int i = 0; i < box->dim; i++) {
-        text_append(text, 160, "%s%c %.4g to %.4g", i > 0 ? ", " : "", "xyz"[i], 1e3 * box -> low[i],
-                    1e3 * box -> high[i]);
-    }
-    text_append(text, 160, " mm");
-    return text;
-}
-
 /* Exit if body and image do not overlap, or have impossible sizes. */
 void check_image_overlap(const struct tool *tool, const struct image *grid, const struct cells *cells,
                          const double *x, int64_t inside)
 {
-    char body_text[160], grid_text[160];
+    char body_text[128], grid_text[128];
     struct box body = box_of(cells->dim, cells->node_count, x), box = image_box(grid);
     box.dim = cells->dim;
     if (box_diagonal(&body) > most_ratio * box_diagonal(&box)) {
