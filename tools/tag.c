@@ -114,7 +114,7 @@ static enum status make_group(const struct request *request, enum group_kind kin
     if (body->cells.count == 0 && kind != GROUP_NODES) {
         return fail(error, STATUS_INPUT, "the stream has no cells, only nodes can be grouped (-n)");
     }
-    if (group_find(&body->groups[kind], name) >= 0 && !request->replace) {
+    if (names_find(&body->groups[kind].names, name) >= 0 && !request->replace) {
         return fail(error, STATUS_INPUT, "there is one of that name already: --replace replaces it");
     }
     NEW_SCRATCH(bool, chosen, items->count, error);
@@ -139,7 +139,7 @@ static enum status find_any(const struct request *request, const char *name, enu
     for (int k = 0; k < GROUP_KINDS; k++) {
         size_t length = strlen(group_kind_names[k]);
         bool prefixed = strncmp(name, group_kind_names[k], length) == 0 && name[length] == ':';
-        int64_t found = group_find(&request->body->groups[k], prefixed ? name + length + 1 : name);
+        int64_t found = names_find(&request->body->groups[k].names, prefixed ? name + length + 1 : name);
         if (found >= 0 && *place >= 0) {
             return fail(error, STATUS_INPUT, "both %s and %s have that name: write %s:%s or %s:%s",
                         group_kind_names[*kind], group_kind_names[k], group_kind_names[*kind], name,
@@ -159,22 +159,15 @@ static enum status rename_group(const struct request *request, struct error *err
     int64_t place;
     const char *after = NULL;
     SCRATCH char *before = NULL;
-    char *name = NULL;
     RETURN_IF_ERROR(take_name(request, &before, &after, error));
     RETURN_IF_ERROR(find_any(request, before, &kind, &place, error));
     RETURN_IF_ERROR(group_check_name(after, error));
     struct group_list *list = &request->body->groups[kind];
-    if (group_find(list, after) >= 0) {
+    if (names_find(&list->names, after) >= 0) {
         return fail(error, STATUS_INPUT, "there is one of the new name already");
     }
-    name = strdup(after);
-    if (name == NULL) {
-        return fail_memory(error, "a name");
-    }
-    free(list->group[place].name);
-    list->group[place].name = name;
     list->changed = true;
-    return STATUS_OK;
+    return names_change(&list->names, place, after, error);
 }
 
 static enum status delete_group(const struct request *request, struct error *error)
@@ -186,10 +179,7 @@ static enum status delete_group(const struct request *request, struct error *err
         return fail(error, STATUS_INPUT,
                     "its cells would belong to no region: give them another region by -r");
     }
-    if (status == STATUS_OK) {
-        group_remove(&request->body->groups[kind], place);
-    }
-    return status;
+    return status == STATUS_OK ? group_remove(&request->body->groups[kind], place, error) : status;
 }
 
 static enum status carry_out(const struct request *request, struct error *error)
@@ -212,17 +202,21 @@ static enum status carry_out(const struct request *request, struct error *error)
 
 static void drop_empty_regions(const struct tool *tool, struct group_list *regions)
 {
-    for (int64_t g = regions->count - 1; g >= 0; g--) {
-        if (regions->group[g].count == 0 && regions->changed) {
-            tool_note(tool, "region '%s' has no cells left: its name is dropped", regions->group[g].name);
-            group_remove(regions, g);
+    TOOL_SCRATCH(tool, bool, any, regions->names.count);
+    for (int64_t i = 0; i < regions->count; i++) {
+        any[regions->member[i].group] = true;
+    }
+    for (int64_t g = regions->names.count - 1; g >= 0 && regions->changed; g--) {
+        if (!any[g]) {
+            tool_note(tool, "region '%s' has no cells left: its name is dropped", regions->names.name[g]);
+            TOOL_TRY(tool, group_remove(regions, g, &error));
         }
     }
 }
 
 /* "facets held: 34, area 0.00012 m2, box 0 0 0 to 0.1 0.1 0 m, mean normal 0 0 -1" */
 static void report(const struct tool *tool, const struct group_body *body, enum group_kind kind,
-                   const struct group *group)
+                   int64_t group)
 {
     static const char *const of_dim[2][2] = {{"length", "area"}, {"area", "volume"}};
     const struct items *items = &body->items[kind];
@@ -232,8 +226,14 @@ static void report(const struct tool *tool, const struct group_body *body, enum 
     double size = 0;
     char place[128];
     char text[512] = "";
-    for (int64_t i = 0; i < group->count; i++) {
-        int32_t item = group->item[i];
+    const struct group_list *list = &body->groups[kind];
+    int64_t count = 0;
+    for (int64_t i = 0; i < list->count; i++) {
+        if (list->member[i].group != group) {
+            continue;
+        }
+        int32_t item = list->member[i].item;
+        count++;
         double normal[3];
         for (int k = 0; k < items->corners; k++) {
             box_add(&box, 1, items->x + (int64_t)items->item[item * items->corners + k] * dim);
@@ -246,7 +246,7 @@ static void report(const struct tool *tool, const struct group_body *body, enum 
             size += vector_length(dim, normal);
         }
     }
-    text_append(text, sizeof text, "%lld", (long long)group->count);
+    text_append(text, sizeof text, "%lld", (long long)count);
     if (kind != GROUP_NODES) {
         bool region = kind == GROUP_REGION;
         int power = dim - !region;
@@ -259,7 +259,7 @@ static void report(const struct tool *tool, const struct group_body *body, enum 
         double share = size > 0 ? sum[k] / size : 0;
         text_append(text, sizeof text, " %.3g", fabs(share) < 1e-9 ? 0 : share);
     }
-    tool_note(tool, "%s %s: %s", group_kind_names[kind], group->name, text);
+    tool_note(tool, "%s %s: %s", group_kind_names[kind], list->names.name[group], text);
 }
 
 /* Remove sections that depend on the groups of facets. */
@@ -276,8 +276,8 @@ static void finish(const struct tool *tool, struct group_body *body, struct stre
 {
     drop_empty_regions(tool, &body->groups[GROUP_REGION]);
     for (int kind = 0; kind < GROUP_KINDS && verbose; kind++) {
-        for (int64_t g = 0; g < body->groups[kind].count; g++) {
-            report(tool, body, (enum group_kind)kind, &body->groups[kind].group[g]);
+        for (int64_t g = 0; g < body->groups[kind].names.count; g++) {
+            report(tool, body, (enum group_kind)kind, g);
         }
     }
     TOOL_TRY(tool, group_body_write(body, stream, &error));

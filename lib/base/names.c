@@ -42,6 +42,17 @@ enum status names_split(struct names *names, const char *list, struct error *err
     return STATUS_OK;
 }
 
+enum status names_change(struct names *names, int64_t index, const char *name, struct error *error)
+{
+    FREED_BY(names_free) struct names old = *names;
+    *names = (struct names){0};
+    for (int64_t i = 0; i < old.count; i++) {
+        const char *kept = i == index ? name : old.name[i];
+        RETURN_IF_ERROR(kept != NULL ? names_add(names, kept, error) : STATUS_OK);
+    }
+    return STATUS_OK;
+}
+
 void names_free(struct names *names)
 {
     for (int64_t i = 0; i < names->count; i++) {

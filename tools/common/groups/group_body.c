@@ -3,6 +3,7 @@
 #include "stages/views.h"
 
 #include "base/box.h"
+#include "base/lists.h"
 #include "base/memory.h"
 
 #include <stdlib.h>
@@ -10,63 +11,15 @@
 
 const char *const group_kind_names[GROUP_KINDS] = {"facets", "nodes", "region"};
 
-/* ---- lists ---- */
-
-int64_t group_find(const struct group_list *list, const char *name)
+/* Set all members of a list; item NULL: 0, 1, ... */
+static enum status set_members(struct group_list *list, int64_t count, const int32_t *group,
+                               const int32_t *item, struct error *error)
 {
-    for (int64_t g = 0; g < list->count; g++) {
-        if (strcmp(list->group[g].name, name) == 0) {
-            return g;
-        }
-    }
-    return -1;
-}
-
-void group_remove(struct group_list *list, int64_t index)
-{
-    FREE_ALL(list->group[index].name, list->group[index].item);
-    list->count--;
-    memmove(&list->group[index], &list->group[index + 1],
-            (size_t)(list->count - index) * sizeof *list->group);
-    list->changed = true;
-}
-
-/* Append an empty group. */
-static enum status add_group(struct group_list *list, const char *name, struct error *error)
-{
-    RETURN_IF_ERROR(RESIZE_ARRAY(&list->group, list->count + 1, error));
-    list->group[list->count] = (struct group){.name = strdup(name)};
-    if (list->group[list->count].name == NULL) {
-        return fail_memory(error, "groups");
-    }
-    list->count++;
-    return STATUS_OK;
-}
-
-/* Append empty groups with these names. */
-static enum status add_named(struct group_list *list, const struct names *names, struct error *error)
-{
-    for (int64_t i = 0; i < names->count; i++) {
-        RETURN_IF_ERROR(add_group(list, names->name[i], error));
-    }
-    return STATUS_OK;
-}
-
-/* Sort items into the groups of_group[count]; items of a group keep their order. */
-static enum status sort_items(struct group_list *list, int64_t count, const int32_t *of_group,
-                              const int32_t *item, struct error *error)
-{
+    RETURN_IF_ERROR(NEW_ARRAY(&list->member, count, error));
     for (int64_t i = 0; i < count; i++) {
-        list->group[of_group[i]].count++;
+        list->member[i] = (struct group_member){group[i], item != NULL ? item[i] : (int32_t)i};
     }
-    for (int64_t g = 0; g < list->count; g++) {
-        RETURN_IF_ERROR(NEW_ARRAY(&list->group[g].item, list->group[g].count, error));
-        list->group[g].count = 0;
-    }
-    for (int64_t i = 0; i < count; i++) {
-        struct group *group = &list->group[of_group[i]];
-        group->item[group->count++] = item != NULL ? item[i] : (int32_t)i;
-    }
+    list->count = list->room = count;
     return STATUS_OK;
 }
 
@@ -99,8 +52,9 @@ static enum status read_facets(const struct stream *stream, struct group_body *b
     RETURN_IF_ERROR(stream_facets(stream, false, &body->cells, &named, error));
     NEW_SCRATCH(int32_t, facet, named.count, error);
     RETURN_IF_ERROR(find_facets(body, &named, facet, error));
-    RETURN_IF_ERROR(add_named(list, &named.names, error));
-    return sort_items(list, named.count, named.group, facet, error);
+    list->names = named.names;
+    named.names = (struct names){0};
+    return set_members(list, named.count, named.group, facet, error);
 }
 
 static enum status read_sets(const struct stream *stream, struct group_body *body, struct error *error)
@@ -108,15 +62,16 @@ static enum status read_sets(const struct stream *stream, struct group_body *bod
     struct group_list *list = &body->groups[GROUP_NODES];
     FREED_BY(named_sets_free) struct named_sets sets = {0};
     RETURN_IF_ERROR(stream_sets(stream, false, body->cells.node_count, &sets, error));
-    RETURN_IF_ERROR(add_named(list, &sets.names, error));
-    for (int64_t g = 0; g < list->count; g++) {
-        struct group *group = &list->group[g];
-        RETURN_IF_ERROR(NEW_ARRAY(&group->item, sets.lists.ptr[g + 1] - sets.lists.ptr[g], error));
+    list->names = sets.names;
+    sets.names = (struct names){0};
+    int64_t count = list->names.count > 0 ? sets.lists.ptr[list->names.count] : 0;
+    NEW_SCRATCH(int32_t, group, count, error);
+    for (int32_t g = 0; g < list->names.count; g++) {
         for (int64_t i = sets.lists.ptr[g]; i < sets.lists.ptr[g + 1]; i++) {
-            group->item[group->count++] = sets.lists.idx[i];
+            group[i] = g;
         }
     }
-    return STATUS_OK;
+    return set_members(list, count, group, sets.lists.idx, error);
 }
 
 static enum status read_regions(const struct stream *stream, struct group_body *body, struct error *error)
@@ -127,8 +82,9 @@ static enum status read_regions(const struct stream *stream, struct group_body *
         return STATUS_OK;
     }
     RETURN_IF_ERROR(stream_regions(stream, &regions, error));
-    RETURN_IF_ERROR(add_named(list, &regions.names, error));
-    return sort_items(list, body->cells.count, regions.of_cell, NULL, error);
+    list->names = regions.names;
+    regions.names = (struct names){0};
+    return set_members(list, body->cells.count, regions.of_cell, NULL, error);
 }
 
 enum status group_body_read(const struct stream *stream, struct group_body *body, struct error *error)
@@ -161,11 +117,8 @@ void group_body_free(struct group_body *body)
     faces_free(&body->boundary);
     free(body->node);
     for (int kind = 0; kind < GROUP_KINDS; kind++) {
-        struct group_list *list = &body->groups[kind];
-        while (list->count > 0) {
-            group_remove(list, list->count - 1);
-        }
-        free(list->group);
+        names_free(&body->groups[kind].names);
+        free(body->groups[kind].member);
     }
     *body = (struct group_body){0};
 }
@@ -191,48 +144,132 @@ enum status group_check_name(const char *name, struct error *error)
     return STATUS_OK;
 }
 
-/* Remove the cells of a new region from their former regions. */
-static void take_cells(struct group_list *regions, const bool *chosen)
+/* Remove the members of a group, and (unless it is NULL) of all groups the chosen items. */
+static void drop_members(struct group_list *list, int64_t group, const bool *chosen)
 {
-    for (int64_t g = 0; g < regions->count; g++) {
-        struct group *group = &regions->group[g];
-        int64_t kept = 0;
-        for (int64_t i = 0; i < group->count; i++) {
-            if (!chosen[group->item[i]]) {
-                group->item[kept++] = group->item[i];
-            }
+    int64_t kept = 0;
+    for (int64_t i = 0; i < list->count; i++) {
+        if (list->member[i].group != group && (chosen == NULL || !chosen[list->member[i].item])) {
+            list->member[kept++] = list->member[i];
         }
-        group->count = kept;
     }
+    list->count = kept;
+    list->changed = true;
 }
 
 enum status group_put(struct group_body *body, enum group_kind kind, const char *name, const bool *chosen,
                       struct error *error)
 {
     struct group_list *list = &body->groups[kind];
-    int64_t place = group_find(list, name);
-    int64_t count = 0;
-    for (int64_t i = 0; i < body->items[kind].count; i++) {
-        count += chosen[i];
+    int64_t place = names_find(&list->names, name);
+    drop_members(list, place, kind == GROUP_REGION ? chosen : NULL);
+    if (place < 0) {
+        place = list->names.count;
+        RETURN_IF_ERROR(names_add(&list->names, name, error));
     }
-    NEW_SCRATCH(int32_t, item, count, error);
-    count = 0;
     for (int64_t i = 0; i < body->items[kind].count; i++) {
         if (chosen[i]) {
-            item[count++] = (int32_t)i;
+            RETURN_IF_ERROR(GROW_ARRAY(&list->member, list->count + 1, &list->room, error));
+            list->member[list->count++] = (struct group_member){(int32_t)place, (int32_t)i};
         }
     }
-    if (place < 0) {
-        place = list->count;
-        RETURN_IF_ERROR(add_group(list, name, error));
+    return STATUS_OK;
+}
+
+enum status group_remove(struct group_list *list, int64_t index, struct error *error)
+{
+    drop_members(list, index, NULL);
+    for (int64_t i = 0; i < list->count; i++) {
+        list->member[i].group -= list->member[i].group > index;
     }
-    if (kind == GROUP_REGION) {
-        take_cells(list, chosen);
+    return names_change(&list->names, index, NULL, error);
+}
+
+/* ---- writing ---- */
+
+/* The items of each group: (*idx)[(*ptr)[g]] to before (*idx)[(*ptr)[g + 1]]. */
+static enum status list_items(const struct group_list *list, int64_t **ptr, int32_t **idx,
+                              struct error *error)
+{
+    NEW_SCRATCH(int32_t, group, list->count, error);
+    for (int64_t i = 0; i < list->count; i++) {
+        group[i] = list->member[i].group;
     }
-    struct group *group = &list->group[place];
-    free(group->item);
-    group->item = array_take(&item);
-    group->count = count;
-    list->changed = true;
+    RETURN_IF_ERROR(lists_by_row(list->count, 1, group, list->names.count, ptr, idx, error));
+    for (int64_t i = 0; i < list->count; i++) {
+        (*idx)[i] = list->member[(*idx)[i]].item;
+    }
+    return STATUS_OK;
+}
+
+static enum status write_facets(const struct group_body *body, const char *names, struct stream *stream,
+                                struct error *error)
+{
+    const struct group_list *list = &body->groups[GROUP_FACETS];
+    int dim = body->boundary.dim;
+    SCRATCH int64_t *ptr = NULL;
+    SCRATCH int32_t *idx = NULL;
+    RETURN_IF_ERROR(list_items(list, &ptr, &idx, error));
+    NEW_SCRATCH(int32_t, node, list->count * dim, error);
+    NEW_SCRATCH(int32_t, set, list->count, error);
+    for (int32_t g = 0; g < list->names.count; g++) {
+        for (int64_t i = ptr[g]; i < ptr[g + 1]; i++) {
+            memcpy(&node[i * dim], &body->boundary.node[(int64_t)idx[i] * dim], (size_t)dim * sizeof *node);
+            set[i] = g;
+        }
+    }
+    RETURN_IF_ERROR(
+        stream_put(stream, "facets", TYPE_I4, list->count, dim, "", array_take(&node), true, error));
+    return stream_put(stream, "facets.set", TYPE_I4, list->count, 1, names, array_take(&set), true, error);
+}
+
+static enum status write_sets(const struct group_body *body, const char *names, struct stream *stream,
+                              struct error *error)
+{
+    const struct group_list *list = &body->groups[GROUP_NODES];
+    SCRATCH int64_t *ptr = NULL;
+    SCRATCH int32_t *idx = NULL;
+    RETURN_IF_ERROR(list_items(list, &ptr, &idx, error));
+    RETURN_IF_ERROR(stream_put(stream, "sets.ptr", TYPE_I8, list->names.count + 1, 1, names, array_take(&ptr),
+                               true, error));
+    return stream_put(stream, "sets.idx", TYPE_I4, list->count, 1, "", array_take(&idx), true, error);
+}
+
+static enum status write_regions(const struct group_body *body, const char *names, struct stream *stream,
+                                 struct error *error)
+{
+    const struct group_list *list = &body->groups[GROUP_REGION];
+    if (list->count < body->cells.count) {
+        return fail(error, STATUS_INPUT,
+                    "%lld of %lld cells belong to no region: give the rest a name, too (-r "
+                    "'NAME=all without region:...')",
+                    (long long)(body->cells.count - list->count), (long long)body->cells.count);
+    }
+    NEW_SCRATCH(int32_t, region, body->cells.count, error);
+    for (int64_t i = 0; i < list->count; i++) {
+        region[list->member[i].item] = list->member[i].group;
+    }
+    return stream_put(stream, "cells.region", TYPE_I4, body->cells.count, 1, names, array_take(&region), true,
+                      error);
+}
+
+enum status group_body_write(const struct group_body *body, struct stream *stream, struct error *error)
+{
+    static enum status (*const write[])(const struct group_body *body, const char *names,
+                                        struct stream *stream,
+                                        struct error *error) = {write_facets, write_sets, write_regions};
+    static const char *const sections[][2] = {{"facets", "facets.set"}, {"sets.ptr", "sets.idx"}};
+    for (int kind = 0; kind < GROUP_KINDS; kind++) {
+        const struct group_list *list = &body->groups[kind];
+        SCRATCH char *names = NULL;
+        RETURN_IF_ERROR(names_attribute(&list->names, &names, error));
+        bool is_empty = kind == GROUP_FACETS ? list->count == 0 : list->names.count == 0;
+        for (int s = 0; s < 2 && list->changed && is_empty && kind != GROUP_REGION; s++) {
+            stream_remove(stream, sections[kind][s]);
+        }
+        if (list->changed && !(is_empty && kind != GROUP_REGION)) {
+            RETURN_IF_ERROR(write[kind](body, names, stream, error));
+        }
+    }
     return STATUS_OK;
 }

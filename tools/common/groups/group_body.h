@@ -4,6 +4,7 @@
 
 #include "approx/cells/cells.h"
 #include "approx/points/select.h"
+#include "base/names.h"
 #include "io/stream/stream.h"
 
 enum group_kind { GROUP_FACETS, GROUP_NODES, GROUP_REGION, GROUP_KINDS };
@@ -11,15 +12,12 @@ enum group_kind { GROUP_FACETS, GROUP_NODES, GROUP_REGION, GROUP_KINDS };
 /* "facets", "nodes", "region": as in expressions and messages. */
 extern const char *const group_kind_names[GROUP_KINDS];
 
-struct group {
-    char *name;
-    int64_t count;
-    int32_t *item; /* count: facets of the boundary, nodes or cells */
-};
-
 struct group_list {
-    int64_t count;
-    struct group *group;
+    struct names names;
+    int64_t count, room;
+    struct group_member {
+        int32_t group, item; /* of names; a facet of the boundary, node or cell */
+    } * member;              /* count; those of a group in their order */
     bool changed;
 };
 
@@ -38,14 +36,11 @@ MUST_CHECK enum status group_body_read(const struct stream *stream, struct group
                                        struct error *error);
 void group_body_free(struct group_body *body);
 
-/* The index of a name in a list, or -1. */
-int64_t group_find(const struct group_list *list, const char *name);
-
 /* Add a group of the chosen items, or replace the one with this name; cells of a region are removed from
  * other regions. */
 MUST_CHECK enum status group_put(struct group_body *body, enum group_kind kind, const char *name,
                                  const bool *chosen, struct error *error);
-void group_remove(struct group_list *list, int64_t index);
+MUST_CHECK enum status group_remove(struct group_list *list, int64_t index, struct error *error);
 
 /* STATUS_INPUT for an invalid name: one with blanks, commas, quotes or colons, or a word of the
  * expressions. */

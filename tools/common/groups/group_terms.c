@@ -289,13 +289,9 @@ static enum status choose_part(const struct term *term)
 
 static enum status fail_unknown(const struct term *term, enum group_kind kind)
 {
-    const struct group_list *list = &term->body->groups[kind];
-    char names[256] = "";
-    for (int64_t g = 0; g < list->count; g++) {
-        text_append(names, sizeof names, "%s%s", g == 0 ? "" : ", ", list->group[g].name);
-    }
-    return fail(term->error, STATUS_INPUT, "'%.60s' is no term of -h, and no name of %s; there are: %s",
-                term->text, group_kind_names[kind], list->count > 0 ? names : "none");
+    const struct names *names = &term->body->groups[kind].names;
+    return fail(term->error, STATUS_INPUT, "'%.60s' is no term of -h, and no name of %s; there are: %.256s",
+                term->text, group_kind_names[kind], names->count > 0 ? names->list : "none");
 }
 
 /* Choose by the items of a group of kind `from`. */
@@ -303,14 +299,14 @@ static enum status choose_named(const struct term *term, enum group_kind from, c
 {
     const struct group_list *list = &term->body->groups[from];
     const struct items *items = &term->body->items[from];
-    int64_t place = group_find(list, name);
+    int64_t place = names_find(&list->names, name);
     SCRATCH bool *in = NULL;
     if (place < 0) {
         return fail_unknown(term, from);
     }
     RETURN_IF_ERROR(NEW_ARRAY(&in, items->count, term->error));
-    for (int64_t i = 0; i < list->group[place].count; i++) {
-        in[list->group[place].item[i]] = true;
+    for (int64_t i = 0; i < list->count; i++) {
+        in[list->member[i].item] |= list->member[i].group == place;
     }
     return choose_by(term, from, in);
 }
