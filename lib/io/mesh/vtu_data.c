@@ -5,8 +5,8 @@
 #include <string.h>
 #include <zlib.h>
 
-/* Memory for what is unpacked grows by so much. */
-#define STRIDE (1 << 20)
+/* What zlib packs is larger by this factor at most. */
+#define MOST_RATIO 1032
 
 /* The value of a digit of base64, -1: none. */
 static int digit_value(char c)
@@ -130,8 +130,14 @@ static void read_blocks(struct msh_reader *r, const struct vtu_source *source, s
     }
 }
 
-/* Refuse blocks that claim more than has a place, before any is unpacked: zeros are packed a thousandfold. */
-static void check_claim(struct msh_reader *r, const struct blocks *blocks, int64_t most)
+static void fail_damaged(struct msh_reader *r)
+{
+    msh_fail(r, "a block of the compressed data is damaged");
+}
+
+/* The bytes that the blocks are to hold. Refuse more than has a place, or than zlib can have packed, before
+ * any is unpacked: zeros are packed a thousandfold. */
+static int64_t check_claim(struct msh_reader *r, const struct blocks *blocks, int64_t most)
 {
     int64_t size = 0;
     bool is_short = blocks->count > 0 && blocks->last > 0;
@@ -139,55 +145,39 @@ static void check_claim(struct msh_reader *r, const struct blocks *blocks, int64
         __builtin_add_overflow(size, is_short ? blocks->last : 0, &size) || size > most) {
         msh_fail(r, "%lld blocks of %lld bytes are more than the %lld that its numbers take",
                  (long long)blocks->count, (long long)blocks->size, (long long)most);
+    } else if (size / MOST_RATIO > blocks->packed) {
+        fail_damaged(r);
     }
-}
-
-/* Append what a block is unpacked to, `wanted` bytes: memory grows with what comes out. */
-static void unpack(struct msh_reader *r, char *packed, int64_t count, int64_t wanted, char **bytes,
-                   int64_t *size, int64_t *room)
-{
-    z_stream stream = {.next_in = (Bytef *)packed, .avail_in = (uInt)count};
-    int result = inflateInit(&stream);
-    while (r->status == STATUS_OK && result == Z_OK) {
-        MSH_GROW(r, bytes, *size + 1, room);
-        int64_t free_bytes = *room - *size < STRIDE ? *room - *size : STRIDE;
-        stream.next_out = (Bytef *)*bytes + *size;
-        stream.avail_out = (uInt)(free_bytes < wanted ? free_bytes : wanted);
-        uInt before = stream.avail_out;
-        result = r->status == STATUS_OK ? inflate(&stream, Z_NO_FLUSH) : result;
-        *size += before - stream.avail_out;
-        wanted -= before - stream.avail_out;
-    }
-    (void)inflateEnd(&stream);
-    if (result == Z_MEM_ERROR) {
-        r->status = fail_memory(r->error, "zlib");
-    } else if (result != Z_STREAM_END || wanted != 0) {
-        msh_fail(r, "a block of the compressed data is damaged");
-    }
+    return size;
 }
 
 static char *read_compressed(struct msh_reader *r, struct vtu_source *source, int64_t *size)
 {
     struct blocks blocks = {0};
     char *bytes = NULL;
-    int64_t room = 0;
-    *size = 0;
     read_blocks(r, source, &blocks);
     SCRATCH char *head = blocks.head;
-    check_claim(r, &blocks, source->most);
+    int64_t whole = check_claim(r, &blocks, source->most);
     if (r->status != STATUS_OK) {
         return NULL;
     }
     int64_t at = (3 + blocks.count) * source->word, end = at + blocks.packed;
     SCRATCH char *packed = read_bytes(r, source, end);
     source->taken = end;
-    MSH_GROW(r, &bytes, 1, &room);
-    for (int64_t b = 0; r->status == STATUS_OK && b < blocks.count; b++) {
+    MSH_NEW(r, &bytes, whole);
+    for (int64_t b = *size = 0; r->status == STATUS_OK && b < blocks.count; b++) {
         int64_t count = head_word(source, head, 3 + b);
         bool is_last = b == blocks.count - 1 && blocks.last > 0;
+        uLongf wanted = (uLongf)(is_last ? blocks.last : blocks.size), got = wanted;
         count = count < end - at ? count : end - at;
-        unpack(r, packed + at, count, is_last ? blocks.last : blocks.size, &bytes, size, &room);
+        int result = uncompress((Bytef *)bytes + *size, &got, (const Bytef *)packed + at, (uLong)count);
+        if (result == Z_MEM_ERROR) {
+            r->status = fail_memory(r->error, "zlib");
+        } else if (result != Z_OK || got != wanted) {
+            fail_damaged(r);
+        }
         at += count;
+        *size += (int64_t)wanted;
     }
     if (r->status != STATUS_OK) {
         free(bytes);
