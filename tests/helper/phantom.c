@@ -71,7 +71,7 @@ int main(int argc, char *argv[])
     }
     int status = fill(&image, &shape, variant != NULL ? variant + 1 : "");
     if (status == 0) {
-        status = (int)image_write(&image, STDOUT_FILENO, IMAGE_NIFTI_GZIP, NULL, &error);
+        status = (int)image_write(&image, stdout, IMAGE_NIFTI_GZIP, NULL, &error);
     }
     image_free(&image);
     free(shape.label);

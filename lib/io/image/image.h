@@ -8,6 +8,7 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdio.h>
 
 /* NIfTI's codes of the types of values that are read and written. */
 enum image_datatype {
@@ -92,16 +93,16 @@ MUST_CHECK enum status image_read_from(struct image *image, int descriptor, cons
 /* The least and the largest value that the image's type and scaling can hold. */
 void image_range(const struct image *image, double *least, double *most);
 
-/* Write an image to an open descriptor, little-endian. Values are rounded to what the type can hold, NaN is 0
- * in integers. NRRD and MetaImage know no scaling: scaled values become floats. They are written in LPS and
- * mm; with a data_file, in their folder, which is to hold the values, only the header is written, else it is
- * NULL. The same image gives the same bytes. Errors: STATUS_INPUT for sizes that do not fit the type of the
- * components; STATUS_SYSTEM for write errors, with errno's text, and memory. */
-MUST_CHECK enum status image_write(const struct image *image, int descriptor, enum image_format format,
+/* Write an image, little-endian. Errors of the file stay in it (ferror). Values are rounded to what the type
+ * can hold, NaN is 0 in integers. NRRD and MetaImage know no scaling: scaled values become floats. They are
+ * written in LPS and mm; with a data_file, in their folder, which is to hold the values, only the header is
+ * written, else it is NULL. The same image gives the same bytes. Errors: STATUS_INPUT for sizes that do not
+ * fit the type of the components; STATUS_SYSTEM: memory. */
+MUST_CHECK enum status image_write(const struct image *image, FILE *file, enum image_format format,
                                    const char *data_file, struct error *error);
 
 /* The values alone, raw: the data_file of a header. Errors as image_write. */
-MUST_CHECK enum status image_write_data(const struct image *image, int descriptor, struct error *error);
+MUST_CHECK enum status image_write_data(const struct image *image, FILE *file, struct error *error);
 
 /* Release values and segments; the image becomes empty. */
 void image_free(struct image *image);

@@ -2,7 +2,6 @@
 #include "io/image/image_private.h"
 
 #include "base/memory.h"
-#include "io/files/descriptor.h"
 
 #include <float.h>
 #include <math.h>
@@ -50,7 +49,7 @@ static void store_values(const struct image *image, const struct nifti_type *typ
 }
 
 /* Write a gzip file of one member, without name and time. */
-static enum status write_gzip(const unsigned char *bytes, size_t size, int descriptor, struct error *error)
+static enum status write_gzip(const unsigned char *bytes, size_t size, FILE *file, struct error *error)
 {
     z_stream stream = {0};
     NEW_SCRATCH(unsigned char, packed, BLOCK, error);
@@ -58,45 +57,36 @@ static enum status write_gzip(const unsigned char *bytes, size_t size, int descr
         return fail_memory(error, "compressed image");
     }
     stream.next_in = (unsigned char *)(uintptr_t)bytes; /* zlib's const */
-    enum status status = STATUS_OK;
-    for (int code = Z_OK; code != Z_STREAM_END && status == STATUS_OK;) {
+    for (int code = Z_OK; code != Z_STREAM_END && ferror(file) == 0;) {
         size_t left = size - (size_t)(stream.next_in - bytes);
         stream.avail_in = (unsigned)(left < BLOCK ? left : BLOCK);
         stream.next_out = packed;
         stream.avail_out = BLOCK;
         code = deflate(&stream, left <= BLOCK ? Z_FINISH : Z_NO_FLUSH);
-        status = descriptor_write(descriptor, packed, BLOCK - stream.avail_out, error);
+        (void)fwrite(packed, 1, BLOCK - stream.avail_out, file);
     }
     deflateEnd(&stream);
-    return status;
+    return STATUS_OK;
 }
 
-static enum status write_header(const struct image *image, int descriptor, enum image_format format,
-                                const char *data_file, struct error *error)
-{
-    SCRATCH char *text = NULL;
-    size_t length;
-    FILE *file = open_memstream(&text, &length);
-    if (file == NULL) {
-        return fail_memory(error, "header of the image");
-    }
-    format == IMAGE_NRRD ? nrrd_print(image, data_file, file) : metaimage_print(image, data_file, file);
-    bool failed = ferror(file) != 0;
-    if (fclose(file) != 0 || failed) {
-        return fail_memory(error, "header of the image");
-    }
-    return descriptor_write(descriptor, text, length, error);
-}
-
-/* Write all values, those of a voxel together. */
-static enum status write_values(const struct image *image, bool packed, int descriptor, struct error *error)
+/* Write the first `offset` bytes and behind them all values, those of a voxel together or a volume for each
+ * component. */
+static enum status write_values(const struct image *image, const unsigned char *begin, size_t offset,
+                                bool together, bool packed, FILE *file, struct error *error)
 {
     const struct nifti_type *type = nifti_type(image->datatype);
-    size_t size = image_voxels(image) * image->components * (size_t)type->bytes;
-    NEW_SCRATCH(unsigned char, bytes, (int64_t)size, error);
-    store_values(image, type, true, bytes);
-    return packed ? write_gzip(bytes, size, descriptor, error)
-                  : descriptor_write(descriptor, bytes, size, error);
+    size_t size = offset + image_voxels(image) * image->components * (size_t)type->bytes;
+    SCRATCH unsigned char *bytes = NULL;
+    RETURN_IF_ERROR(RESIZE_ARRAY(&bytes, (int64_t)size, error));
+    if (offset > 0) {
+        memcpy(bytes, begin, offset);
+    }
+    store_values(image, type, together, bytes + offset);
+    if (packed) {
+        return write_gzip(bytes, size, file, error);
+    }
+    (void)fwrite(bytes, 1, size, file);
+    return STATUS_OK;
 }
 
 /* A type that holds scaled values of a type. */
@@ -120,30 +110,25 @@ static enum status unscaled(const struct image *image, struct image *plain, stru
     return STATUS_OK;
 }
 
-enum status image_write_data(const struct image *image, int descriptor, struct error *error)
+enum status image_write_data(const struct image *image, FILE *file, struct error *error)
 {
     struct image plain;
     RETURN_IF_ERROR(unscaled(image, &plain, error));
-    return write_values(&plain, false, descriptor, error);
+    return write_values(&plain, NULL, 0, true, false, file, error);
 }
 
-enum status image_write(const struct image *image, int descriptor, enum image_format format,
+enum status image_write(const struct image *image, FILE *file, enum image_format format,
                         const char *data_file, struct error *error)
 {
-    const struct nifti_type *type = nifti_type(image->datatype);
     unsigned char header[NIFTI2_HEADER + 4];
     struct image plain;
-    SCRATCH unsigned char *bytes = NULL;
     RETURN_IF_ERROR(unscaled(image, &plain, error));
     if (format == IMAGE_NRRD || format == IMAGE_METAIMAGE) {
-        RETURN_IF_ERROR(write_header(&plain, descriptor, format, data_file, error));
-        return data_file != NULL ? STATUS_OK : write_values(&plain, format == IMAGE_NRRD, descriptor, error);
+        format == IMAGE_NRRD ? nrrd_print(&plain, data_file, file) : metaimage_print(&plain, data_file, file);
+        return data_file != NULL ? STATUS_OK
+                                 : write_values(&plain, NULL, 0, true, format == IMAGE_NRRD, file, error);
     }
     size_t offset = nifti_encode(image, header);
-    size_t size = offset + image_voxels(image) * image->components * (size_t)type->bytes;
-    RETURN_IF_ERROR(RESIZE_ARRAY(&bytes, (int64_t)size, error));
-    memcpy(bytes, header, offset);
-    store_values(image, type, type->components > 1, bytes + offset);
-    return format == IMAGE_NIFTI_GZIP ? write_gzip(bytes, size, descriptor, error)
-                                      : descriptor_write(descriptor, bytes, size, error);
+    return write_values(image, header, offset, nifti_type(image->datatype)->components > 1,
+                        format == IMAGE_NIFTI_GZIP, file, error);
 }

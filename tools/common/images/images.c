@@ -87,11 +87,11 @@ static enum status write_image(const struct tool *tool, const struct image *imag
     struct output output;
     if (data != NULL) { /* before the header, without which they are no image */
         RETURN_IF_ERROR(output_open(&output, data, false, error));
-        RETURN_IF_ERROR(output_end(&output, image_write_data(image, output.descriptor, error), error));
+        RETURN_IF_ERROR(output_end(&output, image_write_data(image, output.file, error), error));
     }
     RETURN_IF_ERROR(output_open(&output, tool->output, false, error));
     return output_end(&output,
-                      image_write(image, output.descriptor, (enum image_format)format,
+                      image_write(image, output.file, (enum image_format)format,
                                   data != NULL ? within_folder(data) : NULL, error),
                       error);
 }
