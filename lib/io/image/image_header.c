@@ -1,6 +1,7 @@
 /* The layout of the 348 bytes of a NIfTI-1 header and of the 540 bytes of NIfTI-2. */
 #include "io/image/image_private.h"
 
+#include <stddef.h>
 #include <string.h>
 
 /* The types of fields. */
@@ -13,40 +14,27 @@ enum {
     F8 = IMAGE_FLOAT64
 };
 
-/* The place of a field in each version. */
-struct place {
-    int offset, type;
+/* The members of struct nifti, and their place in each version. */
+#define AT(member) offsetof(struct nifti, member), sizeof((struct nifti *)0)->member / sizeof(double)
+static const struct field {
+    size_t member, count;
+    struct {
+        int offset, type;
+    } at[2];
+} fields[] = {
+    {AT(dim), {{40, I2}, {16, I8}}},       {AT(intent), {{68, I2}, {504, I4}}},
+    {AT(datatype), {{70, I2}, {12, I2}}},  {AT(bits), {{72, I2}, {14, I2}}},
+    {AT(pixdim), {{76, F4}, {104, F8}}},   {AT(offset), {{108, F4}, {168, I8}}},
+    {AT(slope), {{112, F4}, {176, F8}}},   {AT(inter), {{116, F4}, {184, F8}}},
+    {AT(units), {{123, I1}, {500, I4}}},   {AT(qform), {{252, I2}, {344, I4}}},
+    {AT(sform), {{254, I2}, {348, I4}}},   {AT(quatern), {{256, F4}, {352, F8}}},
+    {AT(qoffset), {{268, F4}, {376, F8}}}, {AT(srow), {{280, F4}, {400, F8}}},
 };
-struct field {
-    struct place at[2];
-};
+enum { FIELDS = sizeof fields / sizeof *fields };
 
-static const struct field dim_field = {{{40, I2}, {16, I8}}}, intent_field = {{{68, I2}, {504, I4}}},
-                          datatype_field = {{{70, I2}, {12, I2}}}, bitpix_field = {{{72, I2}, {14, I2}}},
-                          pixdim_field = {{{76, F4}, {104, F8}}}, offset_field = {{{108, F4}, {168, I8}}},
-                          slope_field = {{{112, F4}, {176, F8}}}, inter_field = {{{116, F4}, {184, F8}}},
-                          units_field = {{{123, I1}, {500, I4}}}, qform_field = {{{252, I2}, {344, I4}}},
-                          sform_field = {{{254, I2}, {348, I4}}}, quatern_field = {{{256, F4}, {352, F8}}},
-                          qoffset_field = {{{268, F4}, {376, F8}}}, srow_field = {{{280, F4}, {400, F8}}};
 static const int description_offset[2] = {148, 240}, intent_name_offset[2] = {328, 508},
                  magic_offset[2] = {344, 4};
 static const char magic1[] = "n+1", magic2[] = "n+2\0\r\n\032\n";
-
-static double get(const unsigned char *bytes, const struct nifti *header, struct field field, int index)
-{
-    struct place at = field.at[header->version - 1];
-    const struct nifti_type *type = nifti_type(at.type);
-    double value;
-    nifti_get(type, bytes + at.offset + index * type->bytes, header->swapped, 1, &value);
-    return value;
-}
-
-static void put(unsigned char *bytes, int version, struct field field, int index, double value)
-{
-    struct place at = field.at[version - 1];
-    const struct nifti_type *type = nifti_type(at.type);
-    nifti_put(type, value, bytes + at.offset + index * type->bytes);
-}
 
 int nifti_version(const unsigned char *bytes, bool *swapped)
 {
@@ -91,28 +79,12 @@ void nifti_decode(const unsigned char *bytes, int version, bool swapped, struct 
                   struct image *image)
 {
     *header = (struct nifti){.version = version, .swapped = swapped};
-    for (int i = 0; i < 8; i++) {
-        header->dim[i] = get(bytes, header, dim_field, i);
-        header->pixdim[i] = get(bytes, header, pixdim_field, i);
-    }
-    header->datatype = (int)get(bytes, header, datatype_field, 0);
-    header->bits = (int)get(bytes, header, bitpix_field, 0);
-    header->intent = (int)get(bytes, header, intent_field, 0);
-    header->offset = get(bytes, header, offset_field, 0);
-    header->slope = get(bytes, header, slope_field, 0);
-    header->inter = get(bytes, header, inter_field, 0);
-    header->units = (int)get(bytes, header, units_field, 0);
-    header->qform = (int)get(bytes, header, qform_field, 0);
-    header->sform = (int)get(bytes, header, sform_field, 0);
-    for (int r = 0; r < 3; r++) {
-        header->quatern[r] = get(bytes, header, quatern_field, r);
-        header->qoffset[r] = get(bytes, header, qoffset_field, r);
-        for (int c = 0; c < 4; c++) {
-            header->srow[r][c] = get(bytes, header, srow_field, 4 * r + c);
-        }
+    for (int f = 0; f < FIELDS; f++) {
+        nifti_get(nifti_type(fields[f].at[version - 1].type), bytes + fields[f].at[version - 1].offset,
+                  swapped, fields[f].count, (double *)(void *)((char *)header + fields[f].member));
     }
     image->version = version;
-    image->intent = header->intent;
+    image->intent = (int)header->intent;
     copy_text(image->description, bytes + description_offset[version - 1], 80);
     copy_text(image->intent_name, bytes + intent_name_offset[version - 1], 16);
 }
@@ -145,40 +117,39 @@ size_t nifti_encode(const struct image *image, unsigned char bytes[NIFTI2_HEADER
 {
     const struct nifti_type *type = nifti_type(image->datatype);
     int version = version_of(image), size = version == 1 ? NIFTI1_HEADER : NIFTI2_HEADER;
-    double dim[8], matrix[3][4], quatern[3], pixdim[4];
     double unit = image->unit == 1 || image->unit == 1e-6 ? image->unit : 1e-3; /* what NIfTI knows */
+    struct nifti header = {.datatype = type->code,
+                           .bits = 8 * type->bytes * type->components,
+                           .intent = image->intent,
+                           .pixdim = {1, 1, 1, 1, 1, 1, 1, 1},
+                           .offset = size + 4,
+                           .slope = image->slope,
+                           .inter = image->inter,
+                           .sform = image->space, /* an unknown space stays unknown */
+                           .units = unit > 0.5      ? 1
+                                    : unit > 0.5e-3 ? 2
+                                                    : 3};
+    sizes_of(image, type, header.dim);
+    for (int i = 0; i < 12; i++) {
+        header.srow[i / 4][i % 4] = image->to_world[i / 4][i % 4] / unit;
+    }
+    /* A map that a quaternion cannot represent is only in the sform. */
+    if (nifti_quaternion(header.srow, header.quatern, header.pixdim)) {
+        header.qform = image->space;
+        for (int r = 0; r < 3; r++) {
+            header.qoffset[r] = header.srow[r][3];
+        }
+    }
     memset(bytes, 0, NIFTI2_HEADER + 4);
     bytes[0] = (unsigned char)(size & 255);
     bytes[1] = (unsigned char)(size >> 8);
-    sizes_of(image, type, dim);
-    for (int i = 0; i < 8; i++) {
-        put(bytes, version, dim_field, i, dim[i]);
-        put(bytes, version, pixdim_field, i, 1);
-    }
-    for (int r = 0; r < 3; r++) {
-        for (int c = 0; c < 4; c++) {
-            matrix[r][c] = image->to_world[r][c] / unit;
-            put(bytes, version, srow_field, 4 * r + c, matrix[r][c]);
+    for (int f = 0; f < FIELDS; f++) {
+        const struct nifti_type *of = nifti_type(fields[f].at[version - 1].type);
+        for (size_t i = 0; i < fields[f].count; i++) {
+            nifti_put(of, ((const double *)(const void *)((const char *)&header + fields[f].member))[i],
+                      bytes + fields[f].at[version - 1].offset + i * (size_t)of->bytes);
         }
     }
-    bool rotation = nifti_quaternion(matrix, quatern, pixdim);
-    for (int i = 0; i < 4; i++) {
-        put(bytes, version, pixdim_field, i, pixdim[i]);
-    }
-    /* An unknown space stays unknown. A map that a quaternion cannot represent is only in the sform. */
-    put(bytes, version, sform_field, 0, image->space);
-    put(bytes, version, qform_field, 0, rotation ? image->space : 0);
-    for (int r = 0; r < 3 && rotation; r++) {
-        put(bytes, version, quatern_field, r, quatern[r]);
-        put(bytes, version, qoffset_field, r, matrix[r][3]);
-    }
-    put(bytes, version, datatype_field, 0, type->code);
-    put(bytes, version, bitpix_field, 0, 8 * type->bytes * type->components);
-    put(bytes, version, intent_field, 0, image->intent);
-    put(bytes, version, slope_field, 0, image->slope);
-    put(bytes, version, inter_field, 0, image->inter);
-    put(bytes, version, units_field, 0, unit > 0.5 ? 1 : unit > 0.5e-3 ? 2 : 3);
-    put(bytes, version, offset_field, 0, size + 4);
     memcpy(bytes + description_offset[version - 1], image->description, strlen(image->description));
     memcpy(bytes + intent_name_offset[version - 1], image->intent_name, strlen(image->intent_name));
     memcpy(bytes + magic_offset[version - 1], version == 1 ? magic1 : magic2, version == 1 ? 4 : 8);

@@ -14,10 +14,7 @@ struct nifti {
     int version;
     bool swapped;
     bool pair; /* the data are in a file of their own */
-    double dim[8];
-    int datatype, bits, intent;
-    double pixdim[8], offset, slope, inter;
-    int qform, sform, units;
+    double dim[8], datatype, bits, intent, pixdim[8], offset, slope, inter, qform, sform, units;
     double quatern[3], qoffset[3], srow[3][4];
 };
 

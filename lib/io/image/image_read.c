@@ -109,17 +109,17 @@ static enum status check_sizes(const struct nifti *header, const struct image_la
 static enum status check_header(const struct nifti *header, int64_t taken, struct image *image,
                                 struct image_layout *layout, struct error *error)
 {
-    const struct nifti_type *type = nifti_type(header->datatype);
+    const struct nifti_type *type = nifti_type((int)header->datatype);
     double least = header->pair ? 0 : header->version == 1 ? NIFTI1_HEADER + 4 : NIFTI2_HEADER + 4;
     if (type == NULL) {
         return fail(
             error, STATUS_INPUT,
             "header: values of type %d: integers of 8 to 64 bits, floats of 32 and 64, RGB and RGBA are read",
-            header->datatype);
+            (int)header->datatype);
     }
     int bits = 8 * type->bytes * type->components;
     if (header->bits != 0 && header->bits != bits) {
-        return fail(error, STATUS_INPUT, "header: %d bits a voxel, but %s has %d", header->bits, type->name,
+        return fail(error, STATUS_INPUT, "header: %.0f bits a voxel, but %s has %d", header->bits, type->name,
                     bits);
     }
     if (header->offset != 0 && !(header->offset >= least && header->offset <= exact_integers &&

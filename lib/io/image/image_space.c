@@ -177,7 +177,7 @@ enum status nifti_space(const struct nifti *header, struct image *image, struct 
     static const double unit[] = {1e-3, 1, 1e-3, 1e-6};
     double matrix[3][4] = {{0}}, other[3][4];
     const char *form = "its voxel sizes (pixdim)";
-    int units = header->units & 7;
+    int units = (int)header->units & 7;
     if (units > 3) {
         return fail(error, STATUS_INPUT, "header: unknown unit of length %d: metres are 1, mm 2, um 3",
                     units);
@@ -189,11 +189,11 @@ enum status nifti_space(const struct nifti *header, struct image *image, struct 
     if (header->sform > 0) {
         form = "its sform";
         memcpy(matrix, header->srow, sizeof matrix);
-        image->space = header->sform;
+        image->space = (int)header->sform;
     } else if (header->qform > 0) {
         form = "its qform";
         from_qform(header, matrix);
-        image->space = header->qform;
+        image->space = (int)header->qform;
     } else {
         from_sizes(header, matrix);
         image_note(image, "has neither sform nor qform: first voxel at the origin, axes taken to be RAS");
