@@ -285,7 +285,7 @@ END
     grep -q '^# moments .*about=0.3,-0.2 ' v.dat
     paste origin <(rows moments v.dat) <(rows reactions u.dat) | awk '{ d = $2 - ($1 - (0.3 * $4 + 0.2 * $3)); if (!(d^2 < 1e-12)) bad = 1 } END { exit bad || NR != 2 }'
     sed 's/^moments = yes/moments_about = 0, 0/' bend.scene > none.scene
-    refused 2 "moments_about: not allowed: it goes with moments = yes" mtled none.scene square.mts
+    refused 2 "moments_about: not allowed: it goes with moments" mtled none.scene square.mts
     # A traction along y on the right side, in 3D: the bottom holds its moment about the middle of the bottom.
     cloud -d 3 -k jittered -n 5 --box 0,0.1,0,0.1,0,0.1 --jitter 0.1 | shapefn > cube.mts 2> note
     { head3; printf '[displacement bottom]\nfacets = zmin\ncomponents = 0, 0, 0\n[traction push]\nfacets = xmax\ncomponents = 0, 1, 0\n'

@@ -87,10 +87,10 @@ reaction() { rows reactions u.dat | awk -v row="$1" -v column="$2" 'NR == row { 
     try '[contact lid]: curve: begins at 0.5, with a jump: begin at time 0 with factor 0' 'translation = 0, -0.01' 'curve = jump.tsv'
     printf '0 0\n0.5 0\n0.50001 1\n1 1\n' > jump.tsv
     try '[contact lid]: curve: jumps from 0 to 1 at time 0.5: give the surface more time' 'translation = 0, -0.01' 'curve = jump.tsv'
-    try 'curve: not allowed: the surface has neither translation nor angle' 'curve = smooth'
+    try 'curve: not allowed: it goes with translation or angle' 'curve = smooth'
     try 'axis_point: missing: give a point of the axis' 'angle = 4' 'curve = smooth'
     try 'axis: not allowed: in 2D a surface turns in the plane' 'angle = 4' 'axis_point = 0, 0' 'axis = 0, 0' 'curve = smooth'
-    try 'axis_point: not allowed: no angle is given' 'translation = 0, 0' 'axis_point = 0, 0' 'curve = smooth'
+    try 'axis_point: not allowed: it goes with angle' 'translation = 0, 0' 'axis_point = 0, 0' 'curve = smooth'
     try 'translation: has 3 components' 'translation = 0, 0, 1' 'curve = smooth'
     try '[contact lid]: a motion of 1e+09 m is prescribed, ' 'translation = 0, -1e9' 'curve = smooth'
     try ' times the size of the body: lengths without a unit are in m' 'angle = 1e9' 'axis_point = 0, 0' 'curve = smooth'

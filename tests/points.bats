@@ -238,7 +238,7 @@ END
     done << 'END'
 points = a.tsv\n|points: needs unit = m, cm, mm or um of its lengths
 points = a.tsv\nunit = m\nfacets = xmin\n|points
-points = a.tsv\nunit = m\ntable = b.tsv\n|table: unknown key: allowed are points, moved, unit, reach, model_error, curve
+points = a.tsv\nunit = m\ntable = b.tsv\n|table: not allowed: it goes with facets or nodes
 facets = xmin\ncomponents = 0, 0\nreach = 1\n|reach: not allowed: it goes with points
 nodes = corner\ncomponents = 0, 0\nmodel_error = 1\n|model_error: not allowed: it goes with points
 points = a.tsv\nunit = m\nreach = 0\n|reach

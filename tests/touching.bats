@@ -333,7 +333,7 @@ END
     try 's/^against.*/against = low/' '[contact pair]: no facet faces another one at rest: name groups that face each other'
     try 's/^against.*/against = ymax/' 'no facet faces another one at rest'
     try 's/^against.*/&\nrigid = floor.tsv/' 'rigid: not allowed: against names facets of the body'
-    try 's/^against.*/&\ncurve = linear/' 'curve: not allowed: against names facets of the body'
+    try 's/^against.*/&\ncurve = linear/' 'curve: not allowed: it goes with translation or angle'
     try '/^against/d' "rigid: missing: name the file of the rigid surface, or, of the body itself, facet groups by 'against'"
     gmsh_body 2 bare < <(sed '/Physical Curve("low")/d' stack.geo)
     sed 's/= ymin/= up/' stack.scene > bare.scene

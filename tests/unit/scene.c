@@ -181,7 +181,8 @@ TEST(long_lines)
     char text[4000];
     FREED_BY(scene_free) struct scene scene = {0};
     snprintf(text, sizeof text,
-             "[scene]\n  title = %01000d    # a comment %0200d\ndim = 2\nanalysis = quasi-static\n" BODY, 7, 8);
+             "[scene]\n  title = %01000d    # a comment %0200d\ndim = 2\nanalysis = quasi-static\n" BODY, 7,
+             8);
     write_bytes(text, strlen(text));
     GOOD(scene_read(path, &scene, &error));
     assert_int_equal(strlen(scene.title), 1000);
@@ -224,16 +225,19 @@ TEST(material_keys)
     fails(HEAD REGION "model = mooney-rivlin\nc1 = 1\nc2 = -1\nnu = 0\n", 7, "c1: c1 + c2 is not positive");
     fails(HEAD REGION "model = mooney-rivlin\nc1 = 1\nratio = 1\n", 8, "ratio: not allowed: it goes with E");
     fails(HEAD BODY "fibre = 1, 0\n", 9, "fibre: not allowed: the law has no fibres, and no active");
-    fails(HEAD BODY "curve = step\n", 9, "curve: not allowed: it is that of active");
+    fails(HEAD BODY "curve = step\n", 9, "curve: not allowed: it goes with active");
     fails(HEAD BODY "prony = .45 .5, .55 50\n", 9, "prony: the sum of g is 1, not below 1");
     fails(HEAD BODY "prony = .45 .5, .365 0\n", 9, "prony: 0 is not above 0");
     fails(HEAD BODY "prony = 0 .5\n", 9, "prony: 0 is not within (0, 1)");
     fails(HEAD BODY "prony = .45, .5\n", 9, "prony: '.45' is not a term: write g and tau in s");
     fails(HEAD BODY "prony = .1 1, .1 2, .1 3, .1 4, .1 5, .1 6, .1 7\n", 9, "prony: has more than 6 terms");
     fails(HEAD BODY "prony = .45 .5\n", 9, "prony: the scene has no time: give duration in [scene], s");
-    fails(HEAD BODY "[solver]\ntime_steps = 5\n", 0, "time_steps: not allowed: the scene has neither duration nor friction");
-    fails(HEAD "duration = 1\n" BODY "[solver]\nmethod = relaxation\n", 11, "method: a scene with duration takes newton");
-    fails("[scene]\ndim = 2\nanalysis = dynamic\nduration = 1\n" BODY, 4, "duration: not allowed: a dynamic scene");
+    fails(HEAD BODY "[solver]\ntime_steps = 5\n", 0,
+          "time_steps: not allowed: the scene has neither duration nor friction");
+    fails(HEAD "duration = 1\n" BODY "[solver]\nmethod = relaxation\n", 11,
+          "method: a scene with duration takes newton");
+    fails("[scene]\ndim = 2\nanalysis = dynamic\nduration = 1\n" BODY, 4,
+          "duration: not allowed: a dynamic scene");
     fails(HEAD "duration = 1\n" BODY, 0, "[scene]: duration: of no use");
     fails(HEAD GUCCIONE "fibre = 0, -0\n", 12, "fibre: has no length: give a direction, as 1, 0, 0");
     fails(HEAD GUCCIONE "fibre = 0, 0, 1\n", 12, "fibre: has 3 components: dim = 2 needs 2");
@@ -288,8 +292,9 @@ TEST(conditions)
     fails(HEAD BODY "[displacement d]\nfacets = f\n", 9,
           "none of table, components, normal: give exactly one");
     fails(HEAD BODY "[displacement d]\nfacets = f\nnormal = 0\ncomponents = 0,0\n", 9, "several of table");
-    fails(HEAD BODY "[displacement d]\nnormal = 0\n", 9, "none of facets, nodes");
-    fails(HEAD BODY "[displacement d]\nnodes = f\nnormal = 0\n", 10, "only facets have a normal");
+    fails(HEAD BODY "[displacement d]\n\n", 9, "none of facets, nodes");
+    fails(HEAD BODY "[displacement d]\nnodes = f\nnormal = 0\n", 11,
+          "normal: not allowed: it goes with facets");
     fails(HEAD BODY "[displacement d]\nfacets = f\ntable = t\n", 11, "table: needs unit = m, cm, mm or um");
     fails(HEAD BODY "[displacement d]\nfacets = f\ncomponents = 0,1,2\n", 11,
           "has 3 components: dim = 2 needs 2, with decimal points");
@@ -316,7 +321,7 @@ TEST(solver_and_output)
     fails(HEAD BODY "[solver]\nconstraints = penalty\n", 10, "none of ebciem, direct");
     fails("[scene]\ndim = 2\nanalysis = dynamic\n" BODY "[solver]\nend_time = 1\ntolerance = .1\n", 11,
           "not allowed");
-    fails(HEAD BODY "[initial]\ntable = t\nunit = m\n", 9, "only dynamic scenes begin somewhere");
+    fails(HEAD BODY "[initial]\ntable = t\nunit = m\n", 10, "only dynamic scenes begin somewhere");
     fails(HEAD BODY "[output]\ninterval = .1\n", 10, "a quasi-static scene has no time: use frames");
     fails(HEAD BODY "[output]\nenergy = /etc/passwd\n", 10,
           "is none of no, yes"); /* no scene names an output */

@@ -11,9 +11,9 @@
 
 static enum status check_scene(const struct place *place, struct scene *scene)
 {
+    (void)place;
     if (scene->analysis == SCENE_DYNAMIC) { /* steps must be accurate, not only stable */
         scene->solver.time_step_margin = 0.75;
-        return place_forbid(place, "duration", "a dynamic scene has end_time");
     }
     return STATUS_OK;
 }
@@ -25,49 +25,50 @@ static enum status check_displacement(const struct place *place, struct scene *s
     RETURN_IF_ERROR(place_require_one(place, KEYS{"facets", "nodes", "points", NULL}));
     if (place_has(place, "points")) {
         displacement->condition.kind = CONDITION_POINTS;
-        return place_only_keys(place, KEYS{"points", "moved", "unit", "reach", "model_error", "curve", NULL});
+        return STATUS_OK;
     }
-    RETURN_IF_ERROR(
-        place_forbid_all(place, KEYS{"moved", "reach", "model_error", NULL}, "it goes with points"));
     RETURN_IF_ERROR(place_require_one(place, KEYS{"table", "components", "normal", NULL}));
-    if (place_has(place, "normal")) {
-        RETURN_IF_ERROR(place_forbid(place, "nodes", "only facets have a normal"));
-        displacement->condition.kind = CONDITION_NORMAL;
-    } else if (place_has(place, "table")) {
-        displacement->condition.kind = CONDITION_TABLE;
-    }
-    if (is_free[0] && is_free[1] && is_free[scene->dim - 1]) {
-        return place_fail(place, "components", "all are free: nothing is prescribed");
-    }
-    return STATUS_OK;
+    displacement->condition.kind = place_has(place, "normal")  ? CONDITION_NORMAL
+                                   : place_has(place, "table") ? CONDITION_TABLE
+                                                               : displacement->condition.kind;
+    return is_free[0] && is_free[1] && is_free[scene->dim - 1]
+               ? place_fail(place, "components", "all are free: nothing is prescribed")
+               : STATUS_OK;
 }
 
-/* Check the motion of a rigid surface, if it has one. */
-static enum status check_motion(const struct place *place, int dim, struct scene_contact *contact)
+static enum status check_contact(const struct place *place, struct scene *scene)
 {
-    bool turns = place_has(place, "angle");
+    struct scene_contact *contact = &scene->contacts[scene->contact_count - 1];
     struct rigid_motion *motion = &contact->condition.motion;
     double *axis = motion->axis;
+    bool turns = place_has(place, "angle"), space = scene->dim == 3;
+    if (place_has(place, "against")) {
+        return place_forbid(place, "rigid", "against names facets of the body, not a rigid surface");
+    }
+    RETURN_IF_ERROR(place_require(
+        place, "rigid",
+        "name the file of the rigid surface, or, of the body itself, facet groups by 'against'"));
+    RETURN_IF_ERROR(place_require(place, "side",
+                                  space ? "front or back of the rigid triangles, where the body lies"
+                                        : "left or right of the rigid curve, where the body lies"));
+    if ((contact->side == SCENE_FRONT || contact->side == SCENE_BACK) != space) {
+        return place_fail(place, "side", "is none of %s", space ? "front, back" : "left, right");
+    }
     motion->moves = turns || place_has(place, "translation");
     motion->angle *= M_PI / 180.0;
-    if (!turns) {
-        RETURN_IF_ERROR(
-            place_forbid_all(place, KEYS{"axis_point", "axis", "angle_curve", NULL}, "no angle is given"));
+    if (motion->moves) {
+        RETURN_IF_ERROR(place_require(
+            place, "curve", "a surface that moves needs smooth, linear, or a file of time and factor"));
     }
-    if (!motion->moves) {
-        return place_forbid(place, "curve", "the surface has neither translation nor angle");
-    }
-    RETURN_IF_ERROR(place_require(place, "curve",
-                                  "a surface that moves needs smooth, linear, or a file of time and factor"));
     if (turns) {
         RETURN_IF_ERROR(place_require(place, "axis_point", "give a point of the axis of rotation in m"));
     }
-    if (dim == 2) {
+    if (!space) {
         RETURN_IF_ERROR(place_forbid(place, "axis", "in 2D a surface turns in the plane, about axis_point"));
     } else if (turns) {
         RETURN_IF_ERROR(place_require(place, "axis", "give the direction of the axis of rotation"));
     }
-    if (dim == 2 || !turns) {
+    if (!space || !turns) {
         axis[2] = 1.0;
     }
     if (!(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2] > 0.0)) {
@@ -76,7 +77,7 @@ static enum status check_motion(const struct place *place, int dim, struct scene
     if (!place_has(place, "angle_curve")) {
         contact->angle_curve = contact->curve;
     }
-    for (int i = 0; i < 2; i++) {
+    for (int i = 0; i < 2 && motion->moves; i++) {
         if ((i == 0 ? contact->curve : contact->angle_curve).kind == CURVE_STEP) {
             return place_fail(place, i == 0 ? "curve" : "angle_curve",
                               "step jumps: a rigid surface moves by smooth, linear, or a file");
@@ -85,44 +86,22 @@ static enum status check_motion(const struct place *place, int dim, struct scene
     return STATUS_OK;
 }
 
-static enum status check_contact(const struct place *place, struct scene *scene)
-{
-    static const char *const of_rigid[] = {"rigid",      "unit", "side",  "translation", "angle",
-                                           "axis_point", "axis", "curve", "angle_curve", NULL};
-    struct scene_contact *contact = &scene->contacts[scene->contact_count - 1];
-    const char *where = scene->dim == 2 ? "left or right of the rigid curve, where the body lies"
-                                        : "front or back of the rigid triangles, where the body lies";
-    if (place_has(place, "against")) {
-        return place_forbid_all(place, of_rigid, "against names facets of the body, not a rigid surface");
-    }
-    RETURN_IF_ERROR(place_require(
-        place, "rigid",
-        "name the file of the rigid surface, or, of the body itself, facet groups by 'against'"));
-    RETURN_IF_ERROR(place_require(place, "side", where));
-    if ((contact->side == SCENE_FRONT || contact->side == SCENE_BACK) != (scene->dim == 3)) {
-        return place_fail(place, "side", "is none of %s", scene->dim == 2 ? "left, right" : "front, back");
-    }
-    return check_motion(place, scene->dim, contact);
-}
-
-/* Check a pressure: a value, or that of a fluid, which grows with the depth below its level. */
+/* A pressure is a value, or that of a fluid, which grows with the depth below its level. */
 static enum status check_pressure(const struct place *place, struct scene *scene)
 {
     (void)scene;
     RETURN_IF_ERROR(place_require_one(place, KEYS{"value", "density", NULL}));
     return place_has(place, "density")
                ? place_require(place, "level", "give a place at the level of the fluid, m")
-               : place_forbid_all(place, KEYS{"level", "side", "gravity", NULL}, "it goes with density");
+               : STATUS_OK;
 }
 
 static enum status check_support(const struct place *place, struct scene *scene)
 {
     const struct support_condition *support = &scene->supports[scene->support_count - 1].condition;
-    bool in_time = scene->analysis == SCENE_DYNAMIC;
-    if (!(support->normal > 0.0 || support->tangential > 0.0 || (in_time && support->damping > 0.0))) {
-        return place_fail(place, NULL, "normal and tangential: both are 0: give a stiffness in Pa/m");
-    }
-    return in_time ? STATUS_OK : place_forbid(place, "damping", "a quasi-static scene has no velocities");
+    return support->normal > 0.0 || support->tangential > 0.0 || support->damping > 0.0
+               ? STATUS_OK
+               : place_fail(place, NULL, "normal and tangential: both are 0: give a stiffness in Pa/m");
 }
 
 static enum status check_membrane(const struct place *place, struct scene *scene)
@@ -135,45 +114,21 @@ static enum status check_membrane(const struct place *place, struct scene *scene
                                  : place_fail(place, "nu", "%.15g is not above -1 and at most 0.5", nu);
 }
 
-static enum status check_initial(const struct place *place, struct scene *scene)
-{
-    return scene->analysis == SCENE_DYNAMIC
-               ? STATUS_OK
-               : place_fail(place, NULL,
-                            "a quasi-static scene has no time: only dynamic scenes begin somewhere");
-}
-
 static enum status check_output(const struct place *place, struct scene *scene)
 {
-    if (place_has(place, "frames")) {
-        RETURN_IF_ERROR(place_forbid(place, "interval", "frames is given"));
-    }
-    if (scene->analysis == SCENE_QUASI_STATIC) {
-        RETURN_IF_ERROR(place_forbid(place, "interval", "a quasi-static scene has no time: use frames"));
-    }
-    return scene->output.moments ? STATUS_OK
-                                 : place_forbid(place, "moments_about", "it goes with moments = yes");
+    (void)scene;
+    return place_has(place, "frames") ? place_forbid(place, "interval", "frames is given") : STATUS_OK;
 }
 
 static enum status check_solver(const struct place *place, struct scene *scene)
 {
-    if (scene->analysis == SCENE_DYNAMIC) {
-        RETURN_IF_ERROR(place_forbid(place, "method", "a dynamic scene is stepped in time"));
-        RETURN_IF_ERROR(place_forbid(place, "ramp_steps", "a dynamic scene has end_time"));
-        RETURN_IF_ERROR(
-            place_forbid(place, "time_steps", "a dynamic scene chooses its own (time_step_margin)"));
-        return place_forbid(place, "tolerance", "a dynamic scene ends at end_time");
-    }
+    static const char why[] = "it goes with method = relaxation: Newton's method chooses its increments";
     if (scene->duration > 0.0 && scene->solver.method != SCENE_NEWTON) {
         return place_fail(place, "method", "a scene with duration takes newton");
     }
-    if (scene->solver.method == SCENE_NEWTON) {
-        static const char why[] = "it goes with method = relaxation: Newton's method chooses its increments";
-        RETURN_IF_ERROR(place_forbid(place, "ramp_steps", why));
-        RETURN_IF_ERROR(place_forbid(place, "time_step_margin", why));
-    }
-    RETURN_IF_ERROR(place_forbid(place, "end_time", "a quasi-static scene has duration, in [scene]"));
-    return place_forbid(place, "damping", "a quasi-static scene chooses its own");
+    return scene->analysis == SCENE_QUASI_STATIC && scene->solver.method == SCENE_NEWTON
+               ? place_forbid_all(place, KEYS{"ramp_steps", "time_step_margin", NULL}, why)
+               : STATUS_OK;
 }
 
 /* ---- every section and key, once: others are refused by these lists, and a test looks for each in the
@@ -188,14 +143,14 @@ static enum status check_solver(const struct place *place, struct scene *scene)
 #define AT(owner, member) .at = offsetof(struct owner, member)
 #define MOST_STEPS ((int64_t)1 << 53)
 
-static const struct scene_key scene_keys[] = {{"dim", VALUE_DIM, AT(scene, dim), .missing = "give 2 or 3"},
-                                              {"analysis", VALUE_CHOICE, AT(scene, analysis),
-                                               .missing = "give quasi-static or dynamic",
-                                               WORDS("quasi-static", "dynamic")},
-                                              {"duration", VALUE_POSITIVE, AT(scene, duration)},
-                                              {"title", VALUE_TEXT, AT(scene, title)},
-                                              {"gravity", VALUE_VECTOR, AT(scene, gravity)},
-                                              {NULL}};
+static const struct scene_key scene_keys[] = {
+    {"dim", VALUE_DIM, AT(scene, dim), .missing = "give 2 or 3"},
+    {"analysis", VALUE_CHOICE, AT(scene, analysis), .missing = "give quasi-static or dynamic",
+     WORDS("quasi-static", "dynamic")},
+    {"duration", VALUE_POSITIVE, AT(scene, duration), .not_dynamic = "a dynamic scene has end_time"},
+    {"title", VALUE_TEXT, AT(scene, title)},
+    {"gravity", VALUE_VECTOR, AT(scene, gravity)},
+    {NULL}};
 
 static const struct scene_key material_keys[] = {
     {"region", VALUE_NAMES, AT(scene_material, regions), .missing = "name the regions made of it"},
@@ -206,8 +161,9 @@ static const struct scene_key material_keys[] = {
     {"D", VALUE_POSITIVE, AT(scene_material, compressibility)},
     {"rho", VALUE_POSITIVE, AT(scene_material, material.density)},
     {"fibre", VALUE_VECTOR, AT(scene_material, fibre)},
-    {"active", VALUE_NOT_NEGATIVE, AT(scene_material, material.active)},
-    {"curve", VALUE_CURVE, AT(scene_material, curve)},
+    {"active", VALUE_NOT_NEGATIVE, AT(scene_material, material.active),
+     .not_dynamic = "it belongs to quasi-static scenes"},
+    {"curve", VALUE_CURVE, AT(scene_material, curve), .with = {"active"}},
     {"prony", VALUE_PRONY, AT(scene_material, prony)},
     {"fibres", VALUE_TABLE, AT(scene_material, fibres)},
     {"fibre_plane", VALUE_VECTOR, AT(scene_material, fibre_plane)},
@@ -219,14 +175,14 @@ static const struct scene_key displacement_keys[] = {
     {"facets", VALUE_NAMES, AT(scene_displacement, facets)},
     {"nodes", VALUE_NAMES, AT(scene_displacement, nodes)},
     {"points", VALUE_TABLE, AT(scene_displacement, condition.table)},
-    {"moved", VALUE_TABLE, AT(scene_displacement, moved)},
-    {"table", VALUE_TABLE, AT(scene_displacement, condition.table)},
+    {"moved", VALUE_TABLE, AT(scene_displacement, moved), .with = {"points"}},
+    {"table", VALUE_TABLE, AT(scene_displacement, condition.table), .with = {"facets", "nodes"}},
     {"unit", VALUE_UNIT, AT(scene_displacement, condition.unit)},
     {"components", VALUE_VECTOR, AT(scene_displacement, condition.components),
-     .free = offsetof(struct scene_displacement, condition.is_free)},
-    {"normal", VALUE_NUMBER, AT(scene_displacement, condition.normal)},
-    {"reach", VALUE_POSITIVE, AT(scene_displacement, reach)},
-    {"model_error", VALUE_POSITIVE, AT(scene_displacement, condition.model_error)},
+     .free = offsetof(struct scene_displacement, condition.is_free), .with = {"facets", "nodes"}},
+    {"normal", VALUE_NUMBER, AT(scene_displacement, condition.normal), .with = {"facets"}},
+    {"reach", VALUE_POSITIVE, AT(scene_displacement, reach), .with = {"points"}},
+    {"model_error", VALUE_POSITIVE, AT(scene_displacement, condition.model_error), .with = {"points"}},
     {"curve", VALUE_CURVE, AT(scene_displacement, curve)},
     {NULL}};
 
@@ -235,24 +191,25 @@ static const struct scene_key contact_keys[] = {
     {"against", VALUE_NAMES, AT(scene_contact, against)},
     {"rigid", VALUE_TABLE, AT(scene_contact, rigid)},
     {"unit", VALUE_UNIT, AT(scene_contact, rigid_unit)},
-    {"side", VALUE_CHOICE, AT(scene_contact, side), WORDS("left", "right", "front", "back")},
+    {"side", VALUE_CHOICE, AT(scene_contact, side), WORDS("left", "right", "front", "back"),
+     .with = {"rigid"}},
     {"stiffness", VALUE_POSITIVE, AT(scene_contact, condition.stiffness)},
     {"friction", VALUE_NOT_NEGATIVE, AT(scene_contact, condition.friction)},
-    {"translation", VALUE_VECTOR, AT(scene_contact, condition.motion.translation)},
-    {"angle", VALUE_NUMBER, AT(scene_contact, condition.motion.angle)},
-    {"axis_point", VALUE_VECTOR, AT(scene_contact, condition.motion.point)},
-    {"axis", VALUE_VECTOR, AT(scene_contact, condition.motion.axis)},
-    {"curve", VALUE_CURVE, AT(scene_contact, curve)},
-    {"angle_curve", VALUE_CURVE, AT(scene_contact, angle_curve)},
+    {"translation", VALUE_VECTOR, AT(scene_contact, condition.motion.translation), .with = {"rigid"}},
+    {"angle", VALUE_NUMBER, AT(scene_contact, condition.motion.angle), .with = {"rigid"}},
+    {"axis_point", VALUE_VECTOR, AT(scene_contact, condition.motion.point), .with = {"angle"}},
+    {"axis", VALUE_VECTOR, AT(scene_contact, condition.motion.axis), .with = {"angle"}},
+    {"curve", VALUE_CURVE, AT(scene_contact, curve), .with = {"translation", "angle"}},
+    {"angle_curve", VALUE_CURVE, AT(scene_contact, angle_curve), .with = {"angle"}},
     {NULL}};
 
 static const struct scene_key pressure_keys[] = {
     {"facets", VALUE_NAMES, AT(scene_load, facets), .missing = "name the facet groups pressed"},
     {"value", VALUE_NUMBER, AT(scene_load, load.pressure)},
     {"density", VALUE_POSITIVE, AT(scene_load, density)},
-    {"level", VALUE_VECTOR, AT(scene_load, load.level)},
-    {"side", VALUE_CHOICE, AT(scene_load, load.part), WORDS("below", "above", "both")},
-    {"gravity", VALUE_VECTOR, AT(scene_load, gravity)},
+    {"level", VALUE_VECTOR, AT(scene_load, load.level), .with = {"density"}},
+    {"side", VALUE_CHOICE, AT(scene_load, load.part), WORDS("below", "above", "both"), .with = {"density"}},
+    {"gravity", VALUE_VECTOR, AT(scene_load, gravity), .with = {"density"}},
     {"curve", VALUE_CURVE, AT(scene_load, curve)},
     {NULL}};
 
@@ -273,7 +230,8 @@ static const struct scene_key support_keys[] = {
     {"facets", VALUE_NAMES, AT(scene_support, facets), .missing = "name the facet groups supported"},
     {"normal", VALUE_NOT_NEGATIVE, AT(scene_support, condition.normal)},
     {"tangential", VALUE_NOT_NEGATIVE, AT(scene_support, condition.tangential)},
-    {"damping", VALUE_NOT_NEGATIVE, AT(scene_support, condition.damping)},
+    {"damping", VALUE_NOT_NEGATIVE, AT(scene_support, condition.damping),
+     .not_static = "a quasi-static scene has no velocities"},
     {NULL}};
 
 static const struct scene_key membrane_keys[] = {
@@ -288,13 +246,15 @@ static const struct scene_key membrane_keys[] = {
 
 static const struct scene_key initial_keys[] = {
     {"table", VALUE_TABLE, AT(scene, initial.table),
+     .not_static = "a quasi-static scene has no time: only dynamic scenes begin somewhere",
      .missing = "name the file of displacements and velocities at the nodes"},
     {"unit", VALUE_UNIT, AT(scene, initial.table_unit)},
     {NULL}};
 
 static const struct scene_key output_keys[] = {
     {"frames", VALUE_COUNT, AT(scene, output.frames), .most = 1000000},
-    {"interval", VALUE_POSITIVE, AT(scene, output.interval)},
+    {"interval", VALUE_POSITIVE, AT(scene, output.interval),
+     .not_static = "a quasi-static scene has no time: use frames"},
     {"stress", VALUE_YES, AT(scene, output.stress)},
     {"strain", VALUE_YES, AT(scene, output.strain)},
     {"pressure", VALUE_YES, AT(scene, output.pressure)},
@@ -303,23 +263,29 @@ static const struct scene_key output_keys[] = {
     {"energy", VALUE_YES, AT(scene, output.energy)},
     {"reactions", VALUE_YES, AT(scene, output.reactions)},
     {"moments", VALUE_YES, AT(scene, output.moments)},
-    {"moments_about", VALUE_VECTOR, AT(scene, output.about)},
+    {"moments_about", VALUE_VECTOR, AT(scene, output.about), .with = {"moments"}},
     {"gaps", VALUE_YES, AT(scene, output.gaps)},
     {"folds", VALUE_YES, AT(scene, output.folds_allowed), WORDS("refused", "allowed")},
     {NULL}};
 
 static const struct scene_key solver_keys[] = {
-    {"method", VALUE_CHOICE, AT(scene, solver.method), WORDS("newton", "relaxation")},
+    {"method", VALUE_CHOICE, AT(scene, solver.method), WORDS("newton", "relaxation"),
+     .not_dynamic = "a dynamic scene is stepped in time"},
     {"constraints", VALUE_YES, AT(scene, solver.direct), WORDS("ebciem", "direct")},
     {"constraint_points", VALUE_YES, AT(scene, solver.node_values), WORDS("hat", "node")},
     {"volume", VALUE_YES, AT(scene, solver.pointwise_volume), WORDS("nodal", "pointwise")},
-    {"tolerance", VALUE_SHARE, AT(scene, solver.tolerance)},
+    {"tolerance", VALUE_SHARE, AT(scene, solver.tolerance),
+     .not_dynamic = "a dynamic scene ends at end_time"},
     {"max_steps", VALUE_COUNT, AT(scene, solver.max_steps), .most = MOST_STEPS},
-    {"ramp_steps", VALUE_COUNT, AT(scene, solver.ramp_steps), .most = MOST_STEPS},
-    {"time_steps", VALUE_COUNT, AT(scene, solver.time_steps), .most = 1000000},
-    {"end_time", VALUE_POSITIVE, AT(scene, solver.end_time)},
+    {"ramp_steps", VALUE_COUNT, AT(scene, solver.ramp_steps), .most = MOST_STEPS,
+     .not_dynamic = "a dynamic scene has end_time"},
+    {"time_steps", VALUE_COUNT, AT(scene, solver.time_steps), .most = 1000000,
+     .not_dynamic = "a dynamic scene chooses its own (time_step_margin)"},
+    {"end_time", VALUE_POSITIVE, AT(scene, solver.end_time),
+     .not_static = "a quasi-static scene has duration, in [scene]"},
     {"time_step_margin", VALUE_SHARE, AT(scene, solver.time_step_margin)},
-    {"damping", VALUE_NOT_NEGATIVE, AT(scene, solver.damping)},
+    {"damping", VALUE_NOT_NEGATIVE, AT(scene, solver.damping),
+     .not_static = "a quasi-static scene chooses its own"},
     {NULL}};
 
 #define ITEMS(items, count)                                                                                  \
@@ -335,7 +301,7 @@ static const struct scene_kind kinds[] = {
     {"pressure", pressure_keys, check_pressure, ITEMS(pressures, pressure_count)},
     {"traction", traction_keys, NULL, ITEMS(tractions, traction_count)},
     {"force", force_keys, NULL, ITEMS(forces, force_count)},
-    {"initial", initial_keys, check_initial, false, 0, 0, 0},
+    {"initial", initial_keys, NULL, false, 0, 0, 0},
     {"output", output_keys, check_output, false, 0, 0, 0},
     {"solver", solver_keys, check_solver, false, 0, 0, 0},
 };

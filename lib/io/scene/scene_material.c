@@ -214,9 +214,6 @@ enum status scene_material_check(const struct place *place, struct scene *scene)
     if (scene->analysis == SCENE_QUASI_STATIC && section->prony.terms > 0 && !(scene->duration > 0.0)) {
         return place_fail(place, "prony", "the scene has no time: give duration in [scene], s");
     }
-    if (!place_has(place, "active")) {
-        RETURN_IF_ERROR(place_forbid(place, "curve", "it is that of active, which is not given"));
-    }
     RETURN_IF_ERROR(law->has_fibres || place_has(place, "active")
                         ? set_fibres(place, law, scene->dim, section)
                         : forbid_fibres(place));

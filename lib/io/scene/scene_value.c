@@ -351,6 +351,15 @@ enum status place_read(const struct place *place, const struct scene_key *key, i
     if (entry == NULL) {
         return key->missing != NULL ? place_require(place, key->name, key->missing) : STATUS_OK;
     }
+    const char *why = place->scene->analysis == SCENE_DYNAMIC ? key->not_dynamic : key->not_static;
+    if (why != NULL) {
+        return place_forbid(place, key->name, why);
+    }
+    if (key->with[0] != NULL && !place_has(place, key->with[0]) &&
+        (key->with[1] == NULL || !place_has(place, key->with[1]))) {
+        return place_fail(place, key->name, "not allowed: it goes with %s%s%s", key->with[0],
+                          key->with[1] != NULL ? " or " : "", key->with[1] != NULL ? key->with[1] : "");
+    }
     char *text = entry->value;
     switch (key->type) {
     case VALUE_NUMBER:

@@ -43,6 +43,8 @@ struct scene_key {
     const char *const *words; /* NULL-terminated */
     int64_t most;
     size_t free; /* VALUE_VECTOR: offset of bool[3], set for components that are `free`; 0: none may be */
+    const char *with[2];                  /* it is allowed only with one of these keys; NULL: any */
+    const char *not_static, *not_dynamic; /* why it is not allowed in such scenes; NULL: it is */
 };
 
 /* Read the value of a key into *item, which is unchanged if the key is absent. */
