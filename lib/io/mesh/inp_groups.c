@@ -51,21 +51,11 @@ static void add_of_surface(struct inp *p, const struct inp_set *set, int type, c
     check_size(p, p->r->msh->element_count);
 }
 
-/* Corners of the faces S1, S2, ... of elements of first order, by gmsh's number; -1 fills up. */
-static const int8_t face_corners[8][6][4] = {
-    [2] = {{0, 1, -1, -1}, {1, 2, -1, -1}, {2, 0, -1, -1}},
-    [3] = {{0, 1, -1, -1}, {1, 2, -1, -1}, {2, 3, -1, -1}, {3, 0, -1, -1}},
-    [4] = {{0, 1, 2, -1}, {0, 3, 1, -1}, {1, 3, 2, -1}, {2, 3, 0, -1}},
-    [5] = {{0, 1, 2, 3}, {4, 7, 6, 5}, {0, 4, 5, 1}, {1, 5, 6, 2}, {2, 6, 7, 3}, {3, 7, 4, 0}},
-    [6] = {{0, 1, 2, -1}, {3, 5, 4, -1}, {0, 3, 4, 1}, {1, 4, 5, 2}, {2, 5, 3, 0}},
-    [7] = {{0, 1, 2, 3}, {0, 4, 1, -1}, {1, 4, 2, -1}, {2, 4, 3, -1}, {3, 4, 0, -1}},
-};
-
 /* Add face `f` of an element. */
 static void add_face(struct inp *p, const struct inp_set *set, int linear, const int64_t node[], int f)
 {
     int64_t face[4];
-    const int8_t *corner = face_corners[linear][f];
+    const int8_t *corner = msh_face_corners[linear][f];
     int count = 0;
     for (; count < 4 && corner[count] >= 0; count++) {
         face[count] = node[corner[count]];
@@ -90,7 +80,7 @@ void inp_add_face(struct inp *p, struct inp_set *set, int64_t place, const char 
     if (side) {
         add_of_surface(p, set, type, node);
     } else if (strchr("SPE", kind) == NULL || face < 1 || face > 6 || linear < 2 || linear > 7 ||
-               face_corners[linear][face - 1][0] == face_corners[linear][face - 1][1]) {
+               msh_face_corners[linear][face - 1][0] == msh_face_corners[linear][face - 1][1]) {
         msh_fail(r, "a %s has no face '%s'", msh_type(type).name, label);
     } else {
         add_face(p, set, linear, node, face - 1);

@@ -7,6 +7,10 @@
 /* Most bytes of the name of a group. */
 #define INPUT_NAME 127
 
+/* Corners of the faces S1, S2, ... that decks of Abaqus count in elements of first order, by gmsh's number;
+ * -1 fills up, 0 behind the last face. (msh_split.c) */
+extern const int8_t msh_face_corners[8][6][4];
+
 /* gmsh's number of a point. */
 #define INPUT_POINT 15
 
