@@ -19,23 +19,13 @@ static void cut_body_free(struct cut_body *whole)
 
 /* ---- groups ---- */
 
-bool incise_is_name(const char *text, const char *name, const char *ending)
+/* *group: the number of the group NAME|ENDING, which may be new. */
+static enum status find_group(struct cut_body *whole, const char *ending, int32_t *group, struct error *error)
 {
-    size_t length = strlen(name);
-    return strncmp(text, name, length) == 0 && strcmp(text + length, ending) == 0;
-}
-
-/* The number of the group NAME|ENDING, which may be new. */
-static int32_t find_group(struct cut_body *whole, const char *ending)
-{
-    const struct names *names = &whole->facets.names;
-    for (int64_t g = 0; g < names->count; g++) {
-        if (incise_is_name(names->name[g], whole->options->name, ending)) {
-            return (int32_t)g;
-        }
-    }
-    whole->added[whole->groups - names->count] = ending;
-    return (int32_t)whole->groups++;
+    struct names *names = &whole->facets.names;
+    RETURN_IF_ERROR(names_print(names, error, "%s%s", whole->options->name, ending));
+    *group = (int32_t)names_find(names, names->name[names->count - 1]);
+    return *group < names->count - 1 ? names_change(names, names->count - 1, NULL, error) : STATUS_OK;
 }
 
 static enum status read_body(const struct stream *stream, struct cut_body *whole, struct error *error)
@@ -58,11 +48,13 @@ static enum status read_body(const struct stream *stream, struct cut_body *whole
             whole->body.sets[lists->idx[i]] |= (uint64_t)1 << s % 64;
         }
     }
-    whole->groups = whole->facets.names.count;
-    whole->front = options->blade != NULL ? find_group(whole, "|front") : -1;
-    whole->back = options->blade != NULL ? find_group(whole, "|back") : -1;
-    whole->wall = options->region != NULL ? find_group(whole, "|wall") : -1;
-    return STATUS_OK;
+    whole->old_groups = whole->facets.names.count;
+    whole->front = whole->back = whole->wall = -1;
+    if (options->blade != NULL) {
+        RETURN_IF_ERROR(find_group(whole, "|front", &whole->front, error));
+        RETURN_IF_ERROR(find_group(whole, "|back", &whole->back, error));
+    }
+    return options->region != NULL ? find_group(whole, "|wall", &whole->wall, error) : STATUS_OK;
 }
 
 /* ---- the cut ---- */

@@ -12,13 +12,9 @@ struct cut_body {
     struct named_sets sets;
     struct division body;
     int32_t front, back, wall; /* groups of facets, -1: none */
-    int64_t groups;            /* those of the stream and new ones */
-    const char *added[3];      /* the endings of the new ones */
+    int64_t old_groups;        /* those of the stream, before new ones */
     struct incise_report *report;
 };
-
-/* Whether a text is the name of a group NAME|ENDING. */
-bool incise_is_name(const char *text, const char *name, const char *ending);
 
 /* Put the cells that are kept[body.cell_count], with their groups, into the stream, and report on them. */
 MUST_CHECK enum status cut_body_put(struct cut_body *whole, const bool *kept, struct stream *stream,

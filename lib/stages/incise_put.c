@@ -10,24 +10,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* *text = "names=A,B,NAME|front", to be freed: of names but that number `without`, and NAME with the endings.
- */
-static enum status make_names(const struct names *names, int64_t without, const char *name, int64_t count,
-                              const char *const endings[], char **text, struct error *error)
-{
-    size_t size = sizeof "names=" + (names->list != NULL ? strlen(names->list) : 0) +
-                  (size_t)count * (strlen(name) + sizeof ",|front");
-    RETURN_IF_ERROR(NEW_ARRAY(text, (int64_t)size, error));
-    char *at = stpcpy(*text, "names=");
-    for (int64_t i = 0; i < names->count; i++) {
-        at = i != without ? stpcpy(stpcpy(at, at[-1] == '=' ? "" : ","), names->name[i]) : at;
-    }
-    for (int64_t i = 0; i < count; i++) {
-        at = stpcpy(stpcpy(stpcpy(at, at[-1] == '=' ? "" : ","), name), endings[i]);
-    }
-    return STATUS_OK;
-}
-
 /* Put an array of the body, which the stream takes, with the attributes that the section has. */
 static enum status put(struct stream *stream, const char *name, enum element_type type, int64_t rows,
                        int64_t cols, void *array, struct error *error)
@@ -61,9 +43,12 @@ static void mark_members(const struct cut_body *whole, int64_t set, bool *in)
 /* The set NAME|edge of the stream, or -1. */
 static int64_t find_edge(const struct cut_body *whole)
 {
+    const char *name = whole->options->name;
+    size_t length = strlen(name);
     int64_t own = -1;
     for (int64_t s = 0; s < whole->sets.names.count && whole->options->blade != NULL; s++) {
-        own = incise_is_name(whole->sets.names.name[s], whole->options->name, "|edge") ? s : own;
+        const char *set = whole->sets.names.name[s];
+        own = strncmp(set, name, length) == 0 && strcmp(set + length, "|edge") == 0 ? s : own;
     }
     return own;
 }
@@ -105,11 +90,10 @@ static enum status mark_edge(const struct cut_body *whole, bool *edge, struct er
 }
 
 /* Node sets in the numbers kept_as[]; `edge` last, or in place of the set that has its name. */
-static enum status put_sets(const struct cut_body *whole, const bool *edge, const int32_t *kept_as,
+static enum status put_sets(struct cut_body *whole, const bool *edge, const int32_t *kept_as,
                             int64_t node_count, struct stream *stream, struct error *error)
 {
-    static const char *const endings[] = {"|edge"};
-    const struct names *names = &whole->sets.names;
+    struct names *names = &whole->sets.names;
     int64_t own = find_edge(whole), room = 0, count = 0, lists = 0;
     SCRATCH int64_t *ptr = NULL;
     SCRATCH int32_t *idx = NULL;
@@ -138,7 +122,13 @@ static enum status put_sets(const struct cut_body *whole, const bool *edge, cons
         return STATUS_OK;
     }
     RETURN_IF_ERROR(RESIZE_ARRAY(&idx, count > 0 ? count : 1, error));
-    RETURN_IF_ERROR(make_names(names, own, whole->options->name, any, endings, &text, error));
+    if (own >= 0) {
+        RETURN_IF_ERROR(names_change(names, own, NULL, error));
+    }
+    if (any) {
+        RETURN_IF_ERROR(names_print(names, error, "%s|edge", whole->options->name));
+    }
+    RETURN_IF_ERROR(names_attribute(names, &text, error));
     RETURN_IF_ERROR(
         stream_put(stream, "sets.ptr", TYPE_I8, lists + 1, 1, text, array_take(&ptr), true, error));
     return stream_put(stream, "sets.idx", TYPE_I4, count, 1, "", array_take(&idx), true, error);
@@ -146,10 +136,10 @@ static enum status put_sets(const struct cut_body *whole, const bool *edge, cons
 
 /* ---- cells and facets ---- */
 
-static enum status put_regions(const struct cut_body *whole, struct stream *stream, struct error *error)
+static enum status put_regions(struct cut_body *whole, struct stream *stream, struct error *error)
 {
     const struct division *body = &whole->body;
-    const struct names *names = &whole->regions.names;
+    struct names *names = &whole->regions.names;
     const char *without = whole->options->region;
     int64_t region = without != NULL ? names_find(names, without) : -1;
     SCRATCH char *text = NULL;
@@ -161,7 +151,10 @@ static enum status put_regions(const struct cut_body *whole, struct stream *stre
         int32_t own = whole->regions.of_cell[body->of_cell[c]];
         of_cell[c] = own - (region >= 0 && own > region);
     }
-    RETURN_IF_ERROR(make_names(names, region, "", 0, NULL, &text, error));
+    if (region >= 0) {
+        RETURN_IF_ERROR(names_change(names, region, NULL, error));
+    }
+    RETURN_IF_ERROR(names_attribute(names, &text, error));
     return stream_put(stream, "cells.region", TYPE_I4, body->cell_count, 1, text, array_take(&of_cell), true,
                       error);
 }
@@ -169,35 +162,33 @@ static enum status put_regions(const struct cut_body *whole, struct stream *stre
 static enum status put_facets(struct cut_body *whole, struct stream *stream, struct error *error)
 {
     struct division *body = &whole->body;
-    const struct names *names = &whole->facets.names;
     SCRATCH char *text = NULL;
     if (body->facet_count == 0) {
         stream_remove(stream, "facets");
         stream_remove(stream, "facets.set");
         return STATUS_OK;
     }
-    RETURN_IF_ERROR(make_names(names, -1, whole->options->name, whole->groups - names->count, whole->added,
-                               &text, error));
+    RETURN_IF_ERROR(names_attribute(&whole->facets.names, &text, error));
     RETURN_IF_ERROR(put(stream, "facets", TYPE_I4, body->facet_count, body->dim, &body->facet, error));
     return stream_put(stream, "facets.set", TYPE_I4, body->facet_count, 1, text, array_take(&body->group),
                       true, error);
 }
 
 /* Drop the new groups without facets, as the wall of a region that bordered on no other. */
-static void drop_empty_groups(struct cut_body *whole)
+static enum status drop_empty_groups(struct cut_body *whole, struct error *error)
 {
     struct division *body = &whole->body;
-    int64_t old = whole->facets.names.count, kept = old;
-    for (int64_t g = old; g < whole->groups; g++) {
+    for (int64_t g = whole->facets.names.count - 1; g >= whole->old_groups; g--) {
         bool any = false;
         for (int64_t f = 0; f < body->facet_count; f++) {
             any = any || body->group[f] == g;
-            body->group[f] = body->group[f] == g ? (int32_t)kept : body->group[f];
         }
-        whole->added[kept - old] = whole->added[g - old];
-        kept += any;
+        for (int64_t f = 0; f < body->facet_count && !any; f++) {
+            body->group[f] -= body->group[f] > g;
+        }
+        RETURN_IF_ERROR(any ? STATUS_OK : names_change(&whole->facets.names, g, NULL, error));
     }
-    whole->groups = kept;
+    return STATUS_OK;
 }
 
 static void report_result(struct cut_body *whole)
@@ -284,7 +275,7 @@ enum status cut_body_put(struct cut_body *whole, const bool *kept, struct stream
     RETURN_IF_ERROR(mark_edge(whole, edge, error));
     RETURN_IF_ERROR(division_take_out(body, kept, whole->wall, kept_as, error));
     report_result(whole);
-    drop_empty_groups(whole);
+    RETURN_IF_ERROR(drop_empty_groups(whole, error));
     for (int64_t n = 0; n < nodes; n++) {
         whole->report->edge += edge[n] && kept_as[n] >= 0;
     }
