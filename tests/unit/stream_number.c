@@ -17,10 +17,10 @@ static uint64_t next_random(uint64_t *state)
 
 static void check_double(double value)
 {
-    char text[NUMBER_TEXT_LIMIT + 1], expected[64];
+    char text[SECTION_NUMBER + 1], expected[64];
     double again;
-    size_t length = number_format_double(text, value);
-    assert_true(length <= NUMBER_TEXT_LIMIT);
+    size_t length = section_print(&(struct section){.type = TYPE_F8, .data = &value}, 0, text);
+    assert_true(length <= SECTION_NUMBER);
     text[length] = '\0';
     snprintf(expected, sizeof expected, "%.17g", value);
     assert_string_equal(text, expected);
@@ -30,9 +30,9 @@ static void check_double(double value)
 
 static void check_float(float value)
 {
-    char text[NUMBER_TEXT_LIMIT + 1], expected[64];
+    char text[SECTION_NUMBER + 1], expected[64];
     float again;
-    size_t length = number_format_float(text, value);
+    size_t length = section_print(&(struct section){.type = TYPE_F4, .data = &value}, 0, text);
     text[length] = '\0';
     snprintf(expected, sizeof expected, "%.9g", (double)value);
     assert_string_equal(text, expected);
@@ -179,9 +179,10 @@ TEST(integers)
 {
     static const int64_t values[] = {0, 1, -1, 9, 10, 99, 100, INT32_MIN, INT32_MAX, INT64_MIN, INT64_MAX};
     for (size_t i = 0; i < sizeof values / sizeof *values; i++) {
-        char text[NUMBER_TEXT_LIMIT + 1], expected[32];
+        char text[SECTION_NUMBER + 1], expected[32];
         int64_t again;
-        size_t length = number_format_integer(text, values[i]);
+        size_t length = section_print(&(struct section){.type = TYPE_I8, .data = (void *)(uintptr_t)values},
+                                      (int64_t)i, text);
         text[length] = '\0';
         snprintf(expected, sizeof expected, "%lld", (long long)values[i]);
         assert_string_equal(text, expected);

@@ -119,6 +119,10 @@ MUST_CHECK enum status stream_add_provenance(struct stream *stream, int argc, ch
 /* Copy the value of attribute `key` of a section into value[size]; false when absent or too long. */
 bool section_attribute(const struct section *section, const char *key, char *value, size_t size);
 
+/* Print an element, without a NUL, so that it reads back exactly; returns the length. */
+enum { SECTION_NUMBER = 32 };
+size_t section_print(const struct section *section, int64_t index, char text[SECTION_NUMBER]);
+
 /* Bytes of one element. */
 size_t element_size(enum element_type type);
 

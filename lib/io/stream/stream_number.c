@@ -74,18 +74,23 @@ const char *number_parse_float(const char *at, const char *end, float *value)
     return behind != NULL && *last == '\0' && (special || isfinite(*value)) ? behind : NULL;
 }
 
-size_t number_format_integer(char *text, int64_t value)
+/* -nan is printed as nan: the sign of a NaN has no meaning. */
+static size_t print_real(char *text, const char *format, double value)
 {
-    return (size_t)snprintf(text, NUMBER_TEXT_LIMIT, "%" PRId64, value);
+    return (size_t)snprintf(text, SECTION_NUMBER, format, isnan(value) ? NAN : value);
 }
 
-/* -nan is written as nan: the sign of a NaN has no meaning. */
-size_t number_format_double(char *text, double value)
+size_t section_print(const struct section *section, int64_t index, char text[SECTION_NUMBER])
 {
-    return (size_t)snprintf(text, NUMBER_TEXT_LIMIT, "%.17g", isnan(value) ? NAN : value);
-}
-
-size_t number_format_float(char *text, float value)
-{
-    return (size_t)snprintf(text, NUMBER_TEXT_LIMIT, "%.9g", isnan(value) ? (double)NAN : (double)value);
+    const void *data = section->data;
+    switch (section->type) {
+    case TYPE_F4:
+        return print_real(text, "%.9g", (double)((const float *)data)[index]);
+    case TYPE_F8:
+        return print_real(text, "%.17g", ((const double *)data)[index]);
+    default:
+        return (size_t)snprintf(text, SECTION_NUMBER, "%" PRId64,
+                                section->type == TYPE_I8 ? ((const int64_t *)data)[index]
+                                                         : (int64_t)((const int32_t *)data)[index]);
+    }
 }

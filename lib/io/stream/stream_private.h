@@ -86,10 +86,3 @@ const char *number_parse_integer(const char *at, const char *end, int64_t least,
                                  int64_t *value);
 const char *number_parse_double(const char *at, const char *end, double *value);
 const char *number_parse_float(const char *at, const char *end, float *value);
-
-/* The converse: write a number without a terminating zero; returns its length, at most NUMBER_TEXT_LIMIT.
- */
-enum { NUMBER_TEXT_LIMIT = 32 };
-size_t number_format_integer(char *text, int64_t value);
-size_t number_format_double(char *text, double value);
-size_t number_format_float(char *text, float value);

@@ -77,32 +77,17 @@ static enum status put_header(struct stream_writer *writer, const struct section
     return put_frame(writer, line, length, error);
 }
 
-static size_t format_element(char *text, const struct section *section, int64_t index)
-{
-    switch (section->type) {
-    case TYPE_I4:
-        return number_format_integer(text, ((const int32_t *)section->data)[index]);
-    case TYPE_I8:
-        return number_format_integer(text, ((const int64_t *)section->data)[index]);
-    case TYPE_F4:
-        return number_format_float(text, ((const float *)section->data)[index]);
-    case TYPE_F8:
-        return number_format_double(text, ((const double *)section->data)[index]);
-    }
-    return 0;
-}
-
 static enum status format_rows(struct stream_writer *writer, const struct section *section,
                                struct error *error)
 {
     int64_t index = 0;
     for (int64_t row = 0; row < section->rows; row++) {
         for (int64_t column = 0; column < section->cols; column++, index++) {
-            if (BLOCK_SIZE - writer->held < NUMBER_TEXT_LIMIT + 1) {
+            if (BLOCK_SIZE - writer->held < SECTION_NUMBER + 1) {
                 RETURN_IF_ERROR(stream_writer_flush(writer, error));
             }
             char *at = writer->block + writer->held;
-            size_t length = format_element(at, section, index);
+            size_t length = section_print(section, index, at);
             at[length++] = column + 1 < section->cols ? ' ' : '\n';
             writer->held += length;
             writer->offset += (int64_t)length;

@@ -66,25 +66,6 @@ bool vtk_tensor(const struct section *section, int64_t from[6])
     return found == section->cols && (section->cols == 6 || (from[4] < 0 && from[5] < 0));
 }
 
-/* Print an element of a section so that it reads back exactly. */
-static void print_element(FILE *file, const struct section *section, int64_t index)
-{
-    switch (section->type) {
-    case TYPE_I4:
-        fprintf(file, "%" PRId32, ((const int32_t *)section->data)[index]);
-        break;
-    case TYPE_I8:
-        fprintf(file, "%" PRId64, ((const int64_t *)section->data)[index]);
-        break;
-    case TYPE_F4:
-        fprintf(file, "%.9g", (double)((const float *)section->data)[index]);
-        break;
-    case TYPE_F8:
-        fprintf(file, "%.17g", ((const double *)section->data)[index]);
-        break;
-    }
-}
-
 /* Flush the file; returns the status of all writes to it. */
 static enum status check_written(FILE *file, struct error *error)
 {
@@ -217,11 +198,9 @@ static void put_rows(struct writer *writer, const struct section *section, const
                 continue;
             }
             fputs(k > 0 ? " " : "", writer->file);
-            if (column < 0) {
-                fputc('0', writer->file);
-            } else {
-                print_element(writer->file, section, index);
-            }
+            char number[SECTION_NUMBER] = "0";
+            size_t length = column < 0 ? 1 : section_print(section, index, number);
+            fwrite(number, 1, length, writer->file);
         }
         fputs(writer->text ? "\n" : "", writer->file);
     }
