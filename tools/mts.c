@@ -95,12 +95,6 @@ static int convert(struct tool *tool)
     return tool_end(tool);
 }
 
-static void print_violation(void *context, const char *text)
-{
-    (void)context;
-    puts(text);
-}
-
 /* Report on valid cells; returns the number of violations found. */
 static int print_cells(const struct tool *tool, const struct stream *stream)
 {
@@ -146,9 +140,12 @@ static int check(struct tool *tool)
 {
     FREED_BY(stream_free) struct stream stream = {0};
     tool_read(tool, tool->operands[1], &stream);
-    int64_t count;
-    TOOL_TRY(tool, stream_check(&stream, print_violation, NULL, &count, &error));
-    count += print_cells(tool, &stream);
+    FREED_BY(names_free) struct names violations = {0};
+    TOOL_TRY(tool, stream_check(&stream, &violations, &error));
+    for (int64_t i = 0; i < violations.count; i++) {
+        puts(violations.name[i]);
+    }
+    int64_t count = violations.count + print_cells(tool, &stream);
     int status = tool_end(tool);
     return count > 0 ? (int)STATUS_VERDICT : status;
 }

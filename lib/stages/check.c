@@ -121,57 +121,36 @@ static enum status check_faces(const struct stream *stream, const struct cells *
 
 /* ---- all of it ---- */
 
-struct check {
-    violation_function *report;
-    void *context;
-    int64_t count;
-    enum status status; /* STATUS_SYSTEM, with this error: no memory to check with */
-    struct error error;
-};
-
-static void record(struct check *check, enum status status, const struct error *error)
+/* Add what is wrong to the violations. */
+static enum status note(struct names *violations, enum status status, struct error *error)
 {
-    if (status == STATUS_INPUT) {
-        check->report(check->context, error->text);
-        check->count++;
-    } else if (status != STATUS_OK) {
-        check->status = status;
-        check->error = *error;
-    }
+    return status == STATUS_INPUT ? names_add(violations, error->text, error) : status;
 }
 
-static void check_together(const struct stream *stream, struct check *check, struct error *error)
+static enum status check_together(const struct stream *stream, struct names *violations, struct error *error)
 {
     struct cells cells = {0};
     if (stream_find(stream, "nodes.x") != NULL) {
-        record(check, stream_cells(stream, false, &cells, error), error);
+        RETURN_IF_ERROR(note(violations, stream_cells(stream, false, &cells, error), error));
     }
-    if (check->count > 0) {
-        return;
+    if (violations->count > 0) {
+        return STATUS_OK;
     }
-    record(check, check_groups(stream, &cells, error), error);
-    record(check, check_faces(stream, &cells, error), error);
+    RETURN_IF_ERROR(note(violations, check_groups(stream, &cells, error), error));
+    RETURN_IF_ERROR(note(violations, check_faces(stream, &cells, error), error));
     for (int k = 0; k < SECTION_KINDS; k++) {
         const struct section_kind *kind = &section_kinds[k];
         if (kind->content == LIST && strcmp(kind->name, "sets.ptr") != 0) {
-            record(check, check_lists(stream, kind->name, error), error);
+            RETURN_IF_ERROR(note(violations, check_lists(stream, kind->name, error), error));
         }
     }
+    return STATUS_OK;
 }
 
-enum status stream_check(const struct stream *stream, violation_function *report, void *context,
-                         int64_t *count, struct error *error)
+enum status stream_check(const struct stream *stream, struct names *violations, struct error *error)
 {
-    struct check check = {.report = report, .context = context};
     for (int64_t i = 0; i < stream->section_count; i++) {
-        record(&check, check_section(stream, &stream->sections[i], error), error);
+        RETURN_IF_ERROR(note(violations, check_section(stream, &stream->sections[i], error), error));
     }
-    if (check.count == 0) {
-        check_together(stream, &check, error);
-    }
-    *count = check.count;
-    if (check.status != STATUS_OK) {
-        *error = check.error;
-    }
-    return check.status;
+    return violations->count == 0 ? check_together(stream, violations, error) : STATUS_OK;
 }

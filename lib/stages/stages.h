@@ -115,12 +115,9 @@ bool solved_is_parameters(const struct section *section);
 struct assembly;
 MUST_CHECK enum status stage_tables(const struct stream *stream, struct assembly *input, struct error *error);
 
-/* Receives each violation as one line, "section: row: what", without newline. */
-typedef void violation_function(void *context, const char *text);
-
 /* Check every section that is in the table of sections. First each by itself: type, columns, rows and
  * numbers. If these are right, sections together: positive volumes of cells, groups, faces, ascending lists,
- * partition of unity within 1e-9. Only the first violation of a section is reported; *count: their number.
- * Absent sections are no violation. STATUS_SYSTEM: memory. */
-MUST_CHECK enum status stream_check(const struct stream *stream, violation_function *report, void *context,
-                                    int64_t *count, struct error *error);
+ * partition of unity within 1e-9. Violations, of which only the first one of a section is told, are added as
+ * lines, "section: row: what". Absent sections are no violation. STATUS_SYSTEM: memory. */
+MUST_CHECK enum status stream_check(const struct stream *stream, struct names *violations,
+                                    struct error *error);
