@@ -47,7 +47,7 @@ int main(void)
     double x[] = {0, 0, 1, 0, 0, 0.5};
     stream_init(&stream);
     bool failed = stream_put(&stream, "nodes.x", TYPE_F8, 3, 2, "unit=m cols=x,y", x, false, &error) != STATUS_OK ||
-        stream_write(&stream, 1, false, &error) != STATUS_OK;
+        stream_write(&stream, stdout, false, &error) != STATUS_OK;
     stream_free(&stream);
     return failed;
 }

@@ -32,7 +32,7 @@ static enum status rewind_file(struct way *way, struct error *error)
 static enum status write_file(struct way *way, struct error *error)
 {
     enum status status = rewind_file(way, error);
-    return status != STATUS_OK ? status : stream_write(&way->stream, fileno(way->file), way->text, error);
+    return status != STATUS_OK ? status : stream_write(&way->stream, way->file, way->text, error);
 }
 
 static enum status read_from(int descriptor, struct error *error)
@@ -47,8 +47,9 @@ static void *writer(void *context)
 {
     struct way *way = context;
     struct error error;
-    way->other = stream_write(&way->stream, way->ends[1], way->text, &error);
-    close(way->ends[1]);
+    FILE *file = fdopen(way->ends[1], "w");
+    way->other = file != NULL ? stream_write(&way->stream, file, way->text, &error) : STATUS_SYSTEM;
+    file != NULL ? fclose(file) : close(way->ends[1]);
     return NULL;
 }
 

@@ -16,12 +16,12 @@
 #include <unistd.h>
 
 /* State of the process, like the standard descriptors. */
-static char **arguments;         /* the command line, operands first; never freed, as is */
-static char **command;           /* the command line for the provenance, up to NULL */
-static const char *main_input;   /* the operand that replaces standard input, or NULL */
-static bool stdin_read;          /* standard input has been read */
-static bool stdout_closed;       /* standard output has been closed, its errors reported */
-static bool ending;              /* this program ends the process, not a library */
+static char **arguments;       /* the command line, operands first; never freed, as is */
+static char **command;         /* the command line for the provenance, up to NULL */
+static const char *main_input; /* the operand that replaces standard input, or NULL */
+static bool stdin_read;        /* standard input has been read */
+static bool stdout_closed;     /* standard output has been closed, its errors reported */
+static bool ending;            /* this program ends the process, not a library */
 
 static void print_message(const struct tool *tool, const char *format, va_list values)
 {
@@ -258,7 +258,7 @@ static enum status write_output(const struct tool *tool, const struct stream *st
 {
     struct output output;
     RETURN_IF_ERROR(output_open_stream(&output, tool, false, error));
-    return output_end(&output, stream_write(stream, output.descriptor, tool->text, error), error);
+    return output_end(&output, stream_write(stream, output.file, tool->text, error), error);
 }
 
 /* The first of several processes writes; all get its status. */

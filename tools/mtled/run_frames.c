@@ -95,7 +95,11 @@ static enum status open_kept(struct run *run, struct error *error)
     if (descriptor < 0 || ftruncate(descriptor, bytes) != 0) {
         return fail_file(frames->kept_file, error);
     }
-    RETURN_IF_ERROR(stream_writer_begin(&frames->kept, descriptor, false, bytes == 0 ? &empty : NULL, error));
+    FILE *file = fdopen(descriptor, "r+");
+    if (file == NULL) {
+        return fail_file(frames->kept_file, error);
+    }
+    stream_writer_begin(&frames->kept, file, false, bytes == 0 ? &empty : NULL);
     frames->kept.offset += bytes;
     frames->kept.section_count = frames->kept_sections;
     return STATUS_OK;
@@ -110,14 +114,15 @@ static enum status copy_kept(struct run *run, struct error *error)
     if (frames->kept_sections == 0) {
         return STATUS_OK;
     }
-    RETURN_IF_ERROR(stream_recover(&stream, frames->kept.descriptor, frames->kept_file, &end, error));
+    RETURN_IF_ERROR(stream_recover(&stream, fileno(frames->kept.file), frames->kept_file, &end, error));
     if (stream.section_count != frames->kept_sections) {
         return fail_kept(run, error);
     }
     for (int64_t i = 0; i < stream.section_count; i++) {
         RETURN_IF_ERROR(stream_writer_put(&frames->writer, &stream, i, error));
     }
-    return lseek(frames->kept.descriptor, 0, SEEK_END) < 0 ? fail_file(frames->kept_file, error) : STATUS_OK;
+    return lseek(fileno(frames->kept.file), 0, SEEK_END) < 0 ? fail_file(frames->kept_file, error)
+                                                             : STATUS_OK;
 }
 
 static enum status begin(struct run *run, struct error *error)
@@ -127,10 +132,7 @@ static enum status begin(struct run *run, struct error *error)
         RETURN_IF_ERROR(open_kept(run, error));
     }
     RETURN_IF_ERROR(output_open_stream(&frames->output, run->tool, true, error));
-    RETURN_IF_ERROR(fail_in(
-        error,
-        stream_writer_begin(&frames->writer, frames->output.descriptor, run->tool->text, run->stream, error),
-        "%s", frames->output.name));
+    stream_writer_begin(&frames->writer, frames->output.file, run->tool->text, run->stream);
     RETURN_IF_ERROR(fail_in(error, put_sections(run, false, error), "%s", frames->output.name));
     return copy_kept(run, error);
 }
@@ -211,7 +213,7 @@ enum status run_frames_state(struct run *run, const struct state *state, struct 
 enum status run_frames_sync(const struct run *run, struct error *error)
 {
     const struct run_frames *frames = &run->frames;
-    bool failed = frames->kept_file != NULL && fsync(frames->kept.descriptor) != 0;
+    bool failed = frames->kept_file != NULL && fsync(fileno(frames->kept.file)) != 0;
     return failed ? fail_file(frames->kept_file, error) : STATUS_OK;
 }
 
@@ -253,10 +255,8 @@ void run_frames_stop(struct run *run, const char *reason)
 void run_frames_free(struct run *run)
 {
     struct run_frames *frames = &run->frames;
-    if (frames->kept_file != NULL && process_speaks()) {
-        close(frames->kept.descriptor);
+    if (frames->kept.file != NULL) {
+        (void)fclose(frames->kept.file);
     }
-    stream_writer_free(&frames->writer);
-    stream_writer_free(&frames->kept);
     free(frames->kept_file);
 }

@@ -147,14 +147,17 @@ static enum status check_regular(const char *file, struct error *error)
 static enum status write_new(const char *name, const struct stream *stream, struct error *error)
 {
     int descriptor = open(name, O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0666);
-    if (descriptor < 0) {
-        return fail_file(name, error);
+    FILE *file = descriptor >= 0 ? fdopen(descriptor, "w") : NULL;
+    if (file == NULL) {
+        enum status status = fail_file(name, error);
+        descriptor_close(&descriptor);
+        return status;
     }
-    enum status status = fail_in(error, stream_write(stream, descriptor, false, error), "%s", name);
+    enum status status = fail_in(error, stream_write(stream, file, false, error), "%s", name);
     if (status == STATUS_OK && fsync(descriptor) != 0) {
         status = fail_file(name, error);
     }
-    if (close(descriptor) != 0 && status == STATUS_OK) {
+    if (fclose(file) != 0 && status == STATUS_OK) {
         status = fail_file(name, error);
     }
     return status;

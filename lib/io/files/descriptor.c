@@ -36,18 +36,6 @@ enum status descriptor_read_all(int descriptor, size_t most, bool (*goes_on)(con
     return STATUS_OK;
 }
 
-enum status descriptor_write(int descriptor, const void *bytes, size_t size, struct error *error)
-{
-    for (const char *at = bytes, *end = at + size; at < end;) {
-        ssize_t count = write(descriptor, at, (size_t)(end - at));
-        if (count == 0 || (count < 0 && errno != EINTR)) {
-            return fail(error, STATUS_SYSTEM, "%s", count < 0 ? strerror(errno) : "no progress");
-        }
-        at += count > 0 ? count : 0;
-    }
-    return STATUS_OK;
-}
-
 void descriptor_close(const int *descriptor)
 {
     if (*descriptor >= 0 && *descriptor != STDIN_FILENO) {

@@ -1,4 +1,4 @@
-/* Reading and writing by descriptors; interrupted and partial transfers are continued. */
+/* Reading by descriptors; interrupted transfers are continued. */
 #pragma once
 
 #include "base/status.h"
@@ -14,9 +14,6 @@ enum { ROOM_BEHIND = 8 };
 MUST_CHECK enum status descriptor_read_all(int descriptor, size_t most,
                                            bool (*goes_on)(const char *bytes, size_t size), char **bytes,
                                            size_t *size, struct error *error);
-
-/* Write all `size` bytes. The message of a failure is the cause alone. */
-MUST_CHECK enum status descriptor_write(int descriptor, const void *bytes, size_t size, struct error *error);
 
 /* Close it, unless it is -1 or standard input: for FREED_BY. */
 void descriptor_close(const int *descriptor);

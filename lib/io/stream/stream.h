@@ -6,6 +6,7 @@
 
 #include <stdbool.h>
 #include <stdint.h>
+#include <stdio.h>
 
 #define MTS_VERSION "0.2.0"
 
@@ -54,27 +55,23 @@ MUST_CHECK enum status stream_read(struct stream *stream, int descriptor, const 
 MUST_CHECK enum status stream_recover(struct stream *stream, int descriptor, const char *name,
                                       struct error *why, struct error *error);
 
-/* Write the stream, as text or binary, with the end line. Does not close the descriptor. Same stream, same
- * bytes, whether written to a pipe or a file. STATUS_SYSTEM with errno's text on a write error. */
-MUST_CHECK enum status stream_write(const struct stream *stream, int descriptor, bool text,
-                                    struct error *error);
+/* Write the stream, as text or binary, with the end line, and flush the file. Same stream, same bytes,
+ * whether written to a pipe or a file. STATUS_SYSTEM with errno's text on a write error. */
+MUST_CHECK enum status stream_write(const struct stream *stream, FILE *file, bool text, struct error *error);
 
 /* The same section by section, so that not all of them need be in memory at once. */
 struct stream_writer {
-    int descriptor;
+    FILE *file; /* errors stay in it until it is flushed */
     bool text;
-    char *block;           /* bytes not yet written */
-    size_t held;           /* their number */
     int64_t offset;        /* of the next byte, from the start of the stream */
     int64_t section_count; /* so far */
     unsigned long crc;     /* of the bytes outside the payloads */
 };
 
 /* Begin a stream, with the provenance of another one, unless that is NULL: then what is written continues one
- * that has been begun before. To be freed, also on failure. */
-MUST_CHECK enum status stream_writer_begin(struct stream_writer *writer, int descriptor, bool text,
-                                           const struct stream *provenance, struct error *error);
-void stream_writer_free(struct stream_writer *writer);
+ * that has been begun before. */
+void stream_writer_begin(struct stream_writer *writer, FILE *file, bool text,
+                         const struct stream *provenance);
 
 /* Append section i of a stream; release its pages, if it is in a mapped input. */
 MUST_CHECK enum status stream_writer_put(struct stream_writer *writer, const struct stream *stream, int64_t i,
@@ -88,8 +85,9 @@ MUST_CHECK enum status stream_writer_flush(struct stream_writer *writer, struct 
 MUST_CHECK enum status stream_writer_end(struct stream_writer *writer, const char *stopped,
                                          struct error *error);
 
-/* Write the rows of one section as bare text: a line per row, single blanks between the numbers. */
-MUST_CHECK enum status stream_write_rows(const struct section *section, int descriptor, struct error *error);
+/* Write the rows of one section as bare text: a line per row, single blanks between the numbers. Errors of
+ * the file stay in it. */
+MUST_CHECK enum status stream_write_rows(const struct section *section, FILE *file, struct error *error);
 
 /* The section of that name, or NULL. */
 const struct section *stream_find(const struct stream *stream, const char *name);

@@ -1,57 +1,34 @@
-/* Writing a stream, as text or binary, in large blocks. */
+/* Writing a stream, as text or binary. */
 #include "io/stream/stream_private.h"
 
 #include "base/memory.h"
-#include "io/files/descriptor.h"
 
+#include <errno.h>
 #include <inttypes.h>
 #include <locale.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <zlib.h>
 
-static enum status write_all(const struct stream_writer *writer, const char *bytes, size_t size,
-                             struct error *error)
-{
-    return fail_in(error, descriptor_write(writer->descriptor, bytes, size, error), "cannot write");
-}
-
 enum status stream_writer_flush(struct stream_writer *writer, struct error *error)
 {
-    size_t held = writer->held;
-    writer->held = 0;
-    return write_all(writer, writer->block, held, error);
+    errno = 0;
+    return fflush(writer->file) == 0 && ferror(writer->file) == 0
+               ? STATUS_OK
+               : fail(error, STATUS_SYSTEM, "cannot write: %s", strerror(errno != 0 ? errno : EIO));
 }
 
-static enum status put_bytes(struct stream_writer *writer, const void *bytes, size_t size,
-                             struct error *error)
+static void put_bytes(struct stream_writer *writer, const void *bytes, size_t size)
 {
     writer->offset += (int64_t)size;
-    if (size > BLOCK_SIZE - writer->held) {
-        RETURN_IF_ERROR(stream_writer_flush(writer, error));
-    }
-    if (size >= BLOCK_SIZE) {
-        return write_all(writer, bytes, size, error);
-    }
-    if (size > 0) {
-        memcpy(writer->block + writer->held, bytes, size);
-        writer->held += size;
-    }
-    return STATUS_OK;
+    (void)fwrite(bytes, 1, size, writer->file);
 }
 
-/* Write bytes outside of payloads. */
-static enum status put_frame(struct stream_writer *writer, const void *bytes, size_t size,
-                             struct error *error)
+/* Write text outside of payloads. */
+static void put_text(struct stream_writer *writer, const char *text)
 {
-    writer->crc = crc32_z(writer->crc, bytes, size);
-    return put_bytes(writer, bytes, size, error);
-}
-
-static enum status put_text(struct stream_writer *writer, const char *text, struct error *error)
-{
-    return put_frame(writer, text, strlen(text), error);
+    writer->crc = crc32_z(writer->crc, (const Bytef *)text, strlen(text));
+    put_bytes(writer, text, strlen(text));
 }
 
 /* Write the header line; before a binary payload it is padded with blanks to the alignment. */
@@ -73,107 +50,71 @@ static enum status put_header(struct stream_writer *writer, const struct section
         }
     }
     line[length++] = '\n';
+    line[length] = '\0';
     *crc = crc32_z(0, (const Bytef *)line, length);
-    return put_frame(writer, line, length, error);
-}
-
-static enum status format_rows(struct stream_writer *writer, const struct section *section,
-                               struct error *error)
-{
-    int64_t index = 0;
-    for (int64_t row = 0; row < section->rows; row++) {
-        for (int64_t column = 0; column < section->cols; column++, index++) {
-            if (BLOCK_SIZE - writer->held < SECTION_NUMBER + 1) {
-                RETURN_IF_ERROR(stream_writer_flush(writer, error));
-            }
-            char *at = writer->block + writer->held;
-            size_t length = section_print(section, index, at);
-            at[length++] = column + 1 < section->cols ? ' ' : '\n';
-            writer->held += length;
-            writer->offset += (int64_t)length;
-        }
-    }
+    put_text(writer, line);
     return STATUS_OK;
 }
 
+static void format_rows(FILE *file, const struct section *section, int64_t *offset)
+{
+    char block[1 << 16];
+    size_t held = 0;
+    int64_t count = section->rows * section->cols;
+    for (int64_t index = 0, column = 1; index < count && ferror(file) == 0; index++, column++) {
+        held += section_print(section, index, block + held);
+        block[held++] = column < section->cols ? ' ' : '\n';
+        column = column < section->cols ? column : 0;
+        if (held > sizeof block - SECTION_NUMBER - 1 || index + 1 == count) {
+            (void)fwrite(block, 1, held, file);
+            *offset += (int64_t)held;
+            held = 0;
+        }
+    }
+}
+
 /* Numbers are written in the C locale, whatever the calling program has set. */
-static enum status put_rows(struct stream_writer *writer, const struct section *section, struct error *error)
+static enum status put_rows(FILE *file, const struct section *section, int64_t *offset, struct error *error)
 {
     locale_t c_locale = newlocale(LC_ALL_MASK, "C", (locale_t)0);
     if (c_locale == (locale_t)0) {
         return fail_memory(error, "output");
     }
     locale_t previous = uselocale(c_locale);
-    enum status status = format_rows(writer, section, error);
+    format_rows(file, section, offset);
     uselocale(previous);
     freelocale(c_locale);
-    return status;
+    return STATUS_OK;
 }
 
-static enum status put_payload_text(struct stream_writer *writer, const struct section *section,
-                                    struct error *error)
-{
-    RETURN_IF_ERROR(put_rows(writer, section, error));
-    return put_bytes(writer, "\n\n", 2, error);
-}
-
-static enum status put_payload_binary(struct stream_writer *writer, const struct section *section,
-                                      uLong header_crc, struct error *error)
+static void put_binary(struct stream_writer *writer, const struct section *section, uLong header_crc)
 {
     char line[32];
     size_t bytes = (size_t)(section->rows * section->cols) * element_size(section->type);
     uLong crc = bytes > 0 ? crc32_z(header_crc, section->data, bytes) : header_crc;
     snprintf(line, sizeof line, "# crc32 %08lx\n", crc);
-    RETURN_IF_ERROR(put_bytes(writer, section->data, bytes, error));
-    RETURN_IF_ERROR(put_bytes(writer, "\n", 1, error));
-    return put_text(writer, line, error);
+    put_bytes(writer, section->data, bytes);
+    put_bytes(writer, "\n", 1);
+    put_text(writer, line);
 }
 
 /* Write a line "KIND TEXT". */
-static enum status put_line(struct stream_writer *writer, const char *kind, const char *text,
-                            struct error *error)
+static void put_line(struct stream_writer *writer, const char *kind, const char *text)
 {
-    RETURN_IF_ERROR(put_text(writer, kind, error));
-    RETURN_IF_ERROR(put_text(writer, text, error));
-    return put_text(writer, "\n", error);
+    put_text(writer, kind);
+    put_text(writer, text);
+    put_text(writer, "\n");
 }
 
-static enum status put_end(struct stream_writer *writer, struct error *error)
+void stream_writer_begin(struct stream_writer *writer, FILE *file, bool text, const struct stream *provenance)
 {
-    char line[64];
-    snprintf(line, sizeof line, "# end %" PRId64, writer->section_count);
-    RETURN_IF_ERROR(put_text(writer, line, error));
-    if (!writer->text && writer->section_count > 0) {
-        snprintf(line, sizeof line, " crc32=%08lx", writer->crc);
-        RETURN_IF_ERROR(put_bytes(writer, line, strlen(line), error));
+    *writer = (struct stream_writer){.file = file, .text = text};
+    if (provenance != NULL) {
+        put_text(writer, FIRST_LINE);
     }
-    return put_bytes(writer, "\n", 1, error);
-}
-
-static enum status allocate(struct stream_writer *writer, int descriptor, bool text, struct error *error)
-{
-    *writer = (struct stream_writer){.descriptor = descriptor, .text = text, .block = malloc(BLOCK_SIZE)};
-    return writer->block != NULL ? STATUS_OK : fail_memory(error, "output");
-}
-
-enum status stream_writer_begin(struct stream_writer *writer, int descriptor, bool text,
-                                const struct stream *provenance, struct error *error)
-{
-    RETURN_IF_ERROR(allocate(writer, descriptor, text, error));
-    if (provenance == NULL) {
-        return STATUS_OK;
+    for (int64_t i = 0; provenance != NULL && i < provenance->provenance_count; i++) {
+        put_line(writer, "# @ ", provenance->provenance[i]);
     }
-    RETURN_IF_ERROR(put_text(writer, "# mts 1\n", error));
-    for (int64_t i = 0; i < provenance->provenance_count; i++) {
-        RETURN_IF_ERROR(put_line(writer, "# @ ", provenance->provenance[i], error));
-    }
-    return STATUS_OK;
-}
-
-void stream_writer_free(struct stream_writer *writer)
-{
-    free(writer->block);
-    *writer = (struct stream_writer){.descriptor = -1};
 }
 
 enum status stream_writer_put(struct stream_writer *writer, const struct stream *stream, int64_t i,
@@ -182,8 +123,12 @@ enum status stream_writer_put(struct stream_writer *writer, const struct stream 
     const struct section *section = &stream->sections[i];
     uLong crc;
     RETURN_IF_ERROR(put_header(writer, section, &crc, error));
-    RETURN_IF_ERROR(writer->text ? put_payload_text(writer, section, error)
-                                 : put_payload_binary(writer, section, crc, error));
+    if (writer->text) {
+        RETURN_IF_ERROR(put_rows(writer->file, section, &writer->offset, error));
+        put_bytes(writer, "\n\n", 2);
+    } else {
+        put_binary(writer, section, crc);
+    }
     section_give_back(stream, section, false);
     writer->section_count++;
     return STATUS_OK;
@@ -191,25 +136,29 @@ enum status stream_writer_put(struct stream_writer *writer, const struct stream 
 
 enum status stream_writer_end(struct stream_writer *writer, const char *stopped, struct error *error)
 {
-    RETURN_IF_ERROR(stopped != NULL ? put_line(writer, "# stopped ", stopped, error)
-                                    : put_end(writer, error));
+    char line[64];
+    if (stopped != NULL) {
+        put_line(writer, "# stopped ", stopped);
+    } else {
+        snprintf(line, sizeof line, "# end %" PRId64, writer->section_count);
+        put_text(writer, line);
+        snprintf(line, sizeof line, " crc32=%08lx\n", writer->crc);
+        put_text(writer, writer->text || writer->section_count == 0 ? "\n" : line);
+    }
     return stream_writer_flush(writer, error);
 }
 
-enum status stream_write(const struct stream *stream, int descriptor, bool text, struct error *error)
+enum status stream_write(const struct stream *stream, FILE *file, bool text, struct error *error)
 {
-    FREED_BY(stream_writer_free) struct stream_writer writer = {0};
-    RETURN_IF_ERROR(stream_writer_begin(&writer, descriptor, text, stream, error));
+    struct stream_writer writer;
+    stream_writer_begin(&writer, file, text, stream);
     for (int64_t i = 0; i < stream->section_count; i++) {
         RETURN_IF_ERROR(stream_writer_put(&writer, stream, i, error));
     }
     return stream_writer_end(&writer, NULL, error);
 }
 
-enum status stream_write_rows(const struct section *section, int descriptor, struct error *error)
+enum status stream_write_rows(const struct section *section, FILE *file, struct error *error)
 {
-    FREED_BY(stream_writer_free) struct stream_writer writer = {0};
-    RETURN_IF_ERROR(allocate(&writer, descriptor, true, error));
-    RETURN_IF_ERROR(put_rows(&writer, section, error));
-    return stream_writer_flush(&writer, error);
+    return put_rows(file, section, &(int64_t){0}, error);
 }
