@@ -25,10 +25,13 @@ static enum status inflate_all(const unsigned char *packed, size_t left, struct 
             inflateReset(&stream);
         }
         status = GROW_ARRAY(&file->bytes, (int64_t)file->size + STRIDE + ROOM_BEHIND, &room, error);
+        if (status != STATUS_OK) {
+            break;
+        }
         stream.next_out = file->bytes + file->size;
-        stream.avail_out = status == STATUS_OK ? STRIDE : 0;
+        stream.avail_out = STRIDE;
         code = inflate(&stream, Z_NO_FLUSH);
-        file->size += status == STATUS_OK ? STRIDE - stream.avail_out : 0;
+        file->size += STRIDE - stream.avail_out;
         if (code == Z_MEM_ERROR) {
             status = fail_memory(error, "compressed image");
         } else if (code != Z_OK && code != Z_BUF_ERROR && code != Z_STREAM_END) {
