@@ -233,6 +233,7 @@ static bool solve(struct newton *n)
 
 bool newton_correct(struct newton *n)
 {
+    double lowest = n->lowest;
     bool whole = solve(n);
     n->length = newton_longest(n, n->step, &n->report->worst_node);
     if (n->length == 0.0) {
@@ -248,6 +249,7 @@ bool newton_correct(struct newton *n)
     }
     while (!try_step(n)) {
         if (!(n->length > least)) {
+            n->lowest = lowest; /* that of a step that goes nowhere is one of round-off */
             return false;
         }
         shorten(n, 0.5);
