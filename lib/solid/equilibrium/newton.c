@@ -36,6 +36,8 @@ static bool goes_on(struct newton *n, struct error *error)
 {
     system_slide(n->system);
     n->rests = true;
+    n->uphill = 0; /* as at every equilibrium */
+    n->above = 0.0;
     n->failure = n->load == newton_load_to_hold(n) ? newton_give_frame(n, error) : STATUS_OK;
     return n->failure == STATUS_OK && n->load < 1.0;
 }

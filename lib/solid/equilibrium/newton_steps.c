@@ -260,9 +260,8 @@ bool newton_correct(struct newton *n)
         memcpy(n->kept, n->u, (size_t)n->size * sizeof *n->u);
         n->kept_length = n->length;
     }
-    n->above += rise(n);
+    n->above = n->length > least ? fmax(0.0, n->above + rise(n)) : 0.0; /* else it is round-off */
     n->uphill = n->above > 0.0 ? n->uphill + 1 : 0;
-    n->above = fmax(n->above, 0.0);
     if (n->uphill > most_uphill && n->kept_length > least) {
         go_back(n);
         return true;
