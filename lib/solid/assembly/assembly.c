@@ -6,6 +6,8 @@
 #include "approx/field/field.h"
 #include "base/box.h"
 #include "base/memory.h"
+#include "base/sets.h"
+#include "solid/system/rigid_modes.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -112,6 +114,24 @@ void assembly_complete(struct assembly *input)
                                             .cell_side = input->cell_side};
 }
 
+/* Whether the conditions leave a body, of cells that are connected, free to move as a whole. */
+static enum status find_floating(const struct cells *cells, struct solid_system *system, struct error *error)
+{
+    int32_t count = 0;
+    NEW_SCRATCH(int32_t, body, cells->node_count, error);
+    set_join_cells(cells->node_count, cells->count, cells->dim + 1, cells->node, body);
+    for (int64_t n = 0; n < cells->node_count; n++) { /* the first node of a body comes before the others */
+        body[n] = body[n] == n ? count++ : body[body[n]];
+    }
+    NEW_SCRATCH(struct rigid_modes, modes, count, error);
+    RETURN_IF_ERROR(system_rigid_modes(system, count, body, modes, error));
+    for (int64_t c = 0; c < cells->count; c++) {
+        const struct rigid_modes *of_cell = &modes[body[cells->node[c * (cells->dim + 1)]]];
+        system->floats = system->floats || of_cell->translations + of_cell->turns > 0;
+    }
+    return STATUS_OK;
+}
+
 enum status assembly_build(struct assembly *input, struct solid_system *system, struct error *note,
                            struct error *error)
 {
@@ -136,6 +156,7 @@ enum status assembly_build(struct assembly *input, struct solid_system *system, 
     RETURN_IF_ERROR(assembly_add_supports(input, system, error));
     RETURN_IF_ERROR(assembly_add_points(input, system, error));
     RETURN_IF_ERROR(assembly_add_contacts(input, system, error));
+    RETURN_IF_ERROR(system_has_friction(system) ? find_floating(&input->cells, system, error) : STATUS_OK);
     return system_share_penalties(system, error);
 }
 

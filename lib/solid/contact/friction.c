@@ -63,6 +63,8 @@ enum status friction_state(struct contact *contact, const char *prefix, const st
         {"friction_anchor", STATE_NUMBERS, friction->anchor, count * dim},
         {"friction_slips", STATE_FLAGS, friction->slips, count},
         {"friction_before", STATE_NUMBERS, friction->before, count * dim},
+        {"friction_passed", STATE_NUMBERS, friction->passed, count * dim},
+        {"friction_sticks", STATE_FLAGS, &friction->sticks, 1},
         {"friction_dissipated", STATE_NUMBERS, &friction->dissipated, 1},
     };
     const struct state_value places[] = {
@@ -191,11 +193,13 @@ static void take_place(struct contact *contact, int64_t p)
 void friction_accept(struct contact *contact)
 {
     struct contact_friction *friction = contact->friction;
-    for (int64_t i = 0; friction != NULL && i < contact->count * contact->dim; i++) {
+    for (int64_t i = 0; friction != NULL && !friction->sticks && i < contact->count * contact->dim; i++) {
         friction->passed[i] = 0.0;
     }
     for (int64_t p = 0; friction != NULL && p < contact->count; p++) {
-        if (!friction->follows) {
+        if (friction->sticks) {
+            friction->yield[p] = contact->pressure[p] > 0.0 ? INFINITY : friction->yield[p];
+        } else if (!friction->follows) {
             friction->yield[p] = friction->coefficient * contact->pressure[p];
         }
         if (contact->between != NULL) {
@@ -345,6 +349,18 @@ void friction_predict(struct contact *contact, bool sticks)
         if (presses ? sticks
                     : touches && fabs(contact->checked_distance[p]) <= contact_round_off(contact, p)) {
             friction->yield[p] = INFINITY;
+        }
+    }
+}
+
+void friction_hold(struct contact *contact, bool sticks)
+{
+    if (contact->friction != NULL) {
+        contact->friction->sticks = sticks;
+        if (sticks) {
+            friction_predict(contact, true);
+        } else {
+            friction_accept(contact);
         }
     }
 }

@@ -25,7 +25,8 @@ struct contact_friction {
     bool *slips;          /* count: it slipped in the last increment, */
     double *before;       /* count * dim: after which slip was this, m */
     double dissipated;    /* since the start, J (2D: J/m) */
-                          /* Until a step is accepted, and otherwise 0: */
+    bool sticks;          /* no point that presses slips: friction_hold */
+                          /* Until a step is accepted while that is false, and otherwise 0: */
     double *passed;       /* count * dim: the slip that a prediction does not take back, m */
                           /* Of the last evaluation. */
     double *slip;         /* count * dim: from the anchor across the normal, m, in the surface's frame */
@@ -61,6 +62,9 @@ void friction_slide(struct contact *contact);
  * pressing do not slip; with `sticks` none that touches does: a body that only friction holds would otherwise
  * be free while its pressures grow. */
 void friction_predict(struct contact *contact, bool sticks);
+
+/* Let no point that presses or touches slip, in any step from the last evaluation on; or let them again. */
+void friction_hold(struct contact *contact, bool sticks);
 
 /* Whether friction holds point p, at the last evaluation. */
 bool friction_sticks(const struct contact *contact, int64_t p);

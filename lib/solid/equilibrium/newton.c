@@ -93,6 +93,10 @@ static enum statics_outcome iterate(struct newton *n, struct error *error)
         }
         newton_augment(n);
         newton_estimate(n);
+        if (n->sticks && n->report->error <= n->options->tolerance) {
+            newton_let_slip(n);
+            newton_estimate(n);
+        }
         if (newton_ends(n, stuck, &outcome) && (outcome != STATICS_CONVERGED || !goes_on(n, error))) {
             return outcome;
         }

@@ -66,12 +66,14 @@ static double round_off(const struct newton *n)
     return 32.0 * DBL_EPSILON * n->body_size / n->report->move;
 }
 
-/* Note progress at this load. Returns the steps without. */
+/* Note progress at this load: neither a body that slides comes to its end, nor one that is not let slip.
+ * Returns the steps without. */
 static int64_t note_progress(struct newton *n)
 {
     struct statics_report *report = n->report;
-    if (n->load > n->best_load + least_growth || report->steps == 1 || report->error < 0.5 * n->best_error ||
-        report->move > moves_on * n->best_move) {
+    bool halved = report->error < 0.5 * n->best_error && !n->sticks;
+    bool moved = report->move > moves_on * n->best_move && !newton_held_by_friction(n);
+    if (n->load > n->best_load + least_growth || report->steps == 1 || halved || moved) {
         n->best_load = n->load;
         n->best_error = report->error;
         n->best_move = report->move;
@@ -105,9 +107,10 @@ bool newton_ends(struct newton *n, bool stuck, enum statics_outcome *outcome)
 {
     int64_t vain = note_progress(n);
     bool holds = n->slides || n->load == newton_load_to_hold(n);
-    bool found = n->corrections > 0 && holds && is_found(n, stuck || vain > most_vain);
-    *outcome = found                                                 ? STATICS_CONVERGED
-               : statics_is_away(n->system, n->report, n->body_size) ? STATICS_AWAY
-                                                                     : STATICS_STALLED;
-    return found || stuck || statics_is_away(n->system, n->report, n->body_size) || vain > 4 * most_vain;
+    bool found = n->corrections > 0 && holds && !n->sticks && is_found(n, stuck || vain > most_vain);
+    bool away = statics_is_away(n->system, n->report, n->body_size);
+    *outcome = found                                ? STATICS_CONVERGED
+               : away || newton_held_by_friction(n) ? STATICS_AWAY
+                                                    : STATICS_STALLED;
+    return found || stuck || away || vain > 4 * most_vain;
 }

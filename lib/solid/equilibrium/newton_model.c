@@ -212,5 +212,5 @@ bool newton_solve_model(struct newton *n, double share, double radius)
         length = newton_longest(n, n->step, NULL);
     }
     note_products(n, MOST_ITERATIONS, before / n->square, &lanczos);
-    return true;
+    return !newton_held_by_friction(n) || n->settled;
 }

@@ -47,6 +47,8 @@ struct newton {
     double lowest; /* least eigenvalue of M^-1 K, from above; INFINITY: not known at this load */
     bool slides;   /* a contact has friction: every increment of the load ends in an equilibrium */
     bool rests;    /* at which u is, of the increment before the next one */
+    bool sticks;   /* no point that presses slips, until that is in equilibrium, */
+    bool settled;  /* at which u is, with the pressures there */
     bool judged;   /* that, and the stability, are of a state near u */
     double length; /* of that step at the node that moved most, m; INFINITY: it was cut short */
     double pressures_lack; /* share of the nodal pressures that the multipliers lack; see body_augment */
@@ -91,7 +93,8 @@ struct deformation newton_evaluate(struct newton *n, const double *u, struct new
 void newton_touch(struct newton *n, const double *u, struct newton_forces *forces);
 
 /* Lower the model at u, from n->step, until the norm of its gradient is below `share` of what it was at
- * first. False where the step reaches the radius at a node before. n->square: the first norm squared. */
+ * first. False where the step reaches the radius at a node before, or where a body that friction alone holds
+ * has not come to rest, as the pressures have not settled. n->square: the first norm squared. */
 bool newton_solve_model(struct newton *n, double share, double radius);
 
 /* search . K search at u, with the stiffness of all but the contacts. */
@@ -121,6 +124,9 @@ bool newton_correct(struct newton *n);
 /* Leave an equilibrium along the last search direction if the stiffness along it is negative, twice as far
  * each time while the energy falls. False where cells invert at once. */
 bool newton_leave(struct newton *n);
+
+/* Let points slip again, at an equilibrium u without slip. */
+void newton_let_slip(struct newton *n);
 
 /* Whether friction alone may hold a body, which slides if it does not. */
 bool newton_held_by_friction(const struct newton *n);

@@ -44,6 +44,8 @@ enum status newton_visit(void *run, const struct state *state, struct error *err
         {"lowest", STATE_NUMBERS, &n->lowest, 1},
         {"waits", STATE_FLAGS, &n->waits, 1},
         {"judged", STATE_FLAGS, &n->judged, 1},
+        {"sticks", STATE_FLAGS, &n->sticks, 1},
+        {"settled", STATE_FLAGS, &n->settled, 1},
         {"rests", STATE_FLAGS, &n->rests, 1},
         {"length", STATE_NUMBERS, &n->length, 1},
         {"largest_move", STATE_NUMBERS, &n->largest_move, 1},

@@ -29,7 +29,7 @@ static const double step_by_width = 0.5;
 
 bool newton_held_by_friction(const struct newton *n)
 {
-    return n->slides && n->preconditioner.has_rigid_mode;
+    return n->system->floats;
 }
 
 /* Evaluate u + step; whether no cell collapses on the way, and the residual does not grow by too much. */
@@ -166,7 +166,7 @@ bool newton_take_increment(struct newton *n, double from, double change)
     n->report->loading_steps++;
     n->corrections = n->uphill = 0;
     n->above = 0.0;
-    n->judged = n->rests = false;
+    n->judged = n->rests = n->settled = false;
     return true;
 }
 
@@ -203,32 +203,36 @@ static void go_back(struct newton *n)
     system_accept(n->system);
 }
 
-/* The step of the model from u. Where friction does not hold the body, as its pressures are those of a step
- * before, the step with the predicted ones is taken, as long as that finds better pressures. */
+/* Let no point that presses slip, or let them slip again, from u on. */
+static void hold(struct newton *n, bool sticks)
+{
+    n->sticks = sticks;
+    newton_touch(n, n->u, &n->at_u);
+    system_hold_friction(n->system, sticks);
+    newton_touch(n, n->u, &n->at_u);
+    preconditioner_follow(&n->preconditioner, n->system);
+}
+
+void newton_let_slip(struct newton *n)
+{
+    hold(n, false);
+    n->settled = true;
+}
+
+/* The step of the model from u. Where that has no minimum, as friction does not hold the body, the pressures
+ * may still be those of a step before, or of another distribution of friction: the body sticks until they
+ * have settled. */
 static bool solve(struct newton *n)
 {
     memset(n->step, 0, (size_t)n->size * sizeof *n->step);
-    if (newton_solve_model(n, left, n->radius)) {
-        return true;
+    bool whole = newton_solve_model(n, n->settled ? left_at_first : left, n->radius);
+    n->settled = false;
+    if (whole || n->sticks || !newton_held_by_friction(n)) {
+        return whole;
     }
-    for (int held = 1; held >= 0 && newton_held_by_friction(n); held--) {
-        if (held == 1) {
-            newton_touch(n, n->u, &n->at_u);
-            system_predict_friction(n->system, true);
-        } else {
-            system_accept(n->system);
-        }
-        newton_touch(n, n->u, &n->at_u);
-        preconditioner_follow(&n->preconditioner, n->system);
-        memset(n->step, 0, (size_t)n->size * sizeof *n->step);
-        bool whole = newton_solve_model(n, left, n->radius);
-        if (held == 1 && whole &&
-            newton_longest(n, n->step, NULL) > n->options->tolerance * n->report->move) {
-            return true;
-        }
-        newton_touch(n, n->u, &n->at_u);
-    }
-    return false;
+    hold(n, true);
+    memset(n->step, 0, (size_t)n->size * sizeof *n->step);
+    return newton_solve_model(n, left, n->radius);
 }
 
 bool newton_correct(struct newton *n)

@@ -35,7 +35,7 @@ enum statics_outcome {
     STATICS_CONVERGED, /* report.error may exceed the tolerance where round-off or contacts prevent less */
     STATICS_TOO_MANY_STEPS,
     STATICS_STALLED,  /* the error no longer falls, well above round-off */
-    STATICS_AWAY,     /* see STATICS_MOST_SIZES */
+    STATICS_AWAY,     /* see STATICS_MOST_SIZES; or friction alone may not hold the body */
     STATICS_INVERTED, /* J <= 0 or not a number at a point, or close to it however short the step */
     STATICS_STOPPED   /* by the progress function */
 };

@@ -62,6 +62,7 @@ struct solid_system {
     struct boundary_averages *contact_points, *contact_averages; /* contact_count: points of the contacts, and
                                                                 their nodal averages (may be empty) */
     int64_t contact_count;
+    bool floats; /* a contact has friction, and the conditions leave a body free to move as a whole */
     struct constraint_rows rows;
     struct sliding sliding;             /* those of the rows along the normals of curved sides */
     const struct condition *conditions; /* of the rows, for messages; the caller's; NULL: not known */
@@ -74,8 +75,8 @@ struct solid_system {
     int64_t spring_count;      /* the last penalties are springs of supports, then those of measured points:
                                   they are not of a condition that is met exactly as well */
     double *penalty_stiffness; /* penalties.count, N/m (2D: N/m2) */
-    double *penalty_unit;    /* penalties.count: stiffness by modulus, m (2D: 1); 0: it stays as it is */
-    int32_t *penalty_volume; /* penalties.count: the nodal volume at a penalty's node; -1: none */
+    double *penalty_unit;      /* penalties.count: stiffness by modulus, m (2D: 1); 0: it stays as it is */
+    int32_t *penalty_volume;   /* penalties.count: the nodal volume at a penalty's node; -1: none */
     double *penalty_force;     /* penalties.count: scratch */
     struct load_curve *curves;
     int64_t curve_count;
@@ -130,6 +131,7 @@ void system_accept(struct solid_system *system);
  * dissipated, J (2D: J/m). */
 bool system_has_friction(const struct solid_system *system);
 void system_predict_friction(struct solid_system *system, bool sticks);
+void system_hold_friction(struct solid_system *system, bool sticks);
 void system_slide(struct solid_system *system);
 double system_friction_work(const struct solid_system *system);
 
@@ -174,8 +176,8 @@ void system_add_penalties(struct solid_system *system, const double *u, double *
 double system_penalty_energy(const struct solid_system *system, const double *u);
 double system_spring_energy(const struct solid_system *system, const double *u);
 
-/* Append a constraint penalty: the arguments of constraint_rows_add, the stiffness, N/m (2D: N/m2), and that by
- * the modulus, m (2D: 1), if it may become stiffer, or 0. */
+/* Append a constraint penalty: the arguments of constraint_rows_add, the stiffness, N/m (2D: N/m2), and that
+ * by the modulus, m (2D: 1), if it may become stiffer, or 0. */
 MUST_CHECK enum status system_append_penalty(struct solid_system *system, const struct average *average,
                                              const double *direction, double target, int32_t curve,
                                              int32_t section, int32_t node, double stiffness, double unit,
