@@ -87,7 +87,7 @@ static bool is_found(struct newton *n, bool vain)
 {
     struct statics_report *report = n->report;
     double most = n->options->tolerance;
-    if (report->error <= most && !n->judged) {
+    if ((report->error <= most || (vain && isinf(n->lowest))) && !n->judged) {
         newton_judge_stability(n);
         n->judged = true;
         newton_estimate(n);
