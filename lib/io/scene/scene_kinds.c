@@ -107,9 +107,6 @@ static enum status check_support(const struct place *place, struct scene *scene)
 static enum status check_membrane(const struct place *place, struct scene *scene)
 {
     double nu = scene->membranes[scene->membrane_count - 1].condition.law.poisson_ratio;
-    if (!place_has(place, "prestress")) {
-        RETURN_IF_ERROR(place_forbid(place, "curve", "it is that of prestress, which is not given"));
-    }
     return nu > -1.0 && nu <= .5 ? STATUS_OK
                                  : place_fail(place, "nu", "%.15g is not above -1 and at most 0.5", nu);
 }
@@ -161,8 +158,7 @@ static const struct scene_key material_keys[] = {
     {"D", VALUE_POSITIVE, AT(scene_material, compressibility)},
     {"rho", VALUE_POSITIVE, AT(scene_material, material.density)},
     {"fibre", VALUE_VECTOR, AT(scene_material, fibre)},
-    {"active", VALUE_NOT_NEGATIVE, AT(scene_material, material.active),
-     .not_dynamic = "it belongs to quasi-static scenes"},
+    {"active", VALUE_NOT_NEGATIVE, AT(scene_material, material.active)},
     {"curve", VALUE_CURVE, AT(scene_material, curve), .with = {"active"}},
     {"prony", VALUE_PRONY, AT(scene_material, prony)},
     {"fibres", VALUE_TABLE, AT(scene_material, fibres)},
@@ -241,7 +237,7 @@ static const struct scene_key membrane_keys[] = {
      .missing = "give Young's modulus in Pa"},
     {"nu", VALUE_NUMBER, AT(scene_membrane, condition.law.poisson_ratio), .missing = "give Poisson's ratio"},
     {"prestress", VALUE_NOT_NEGATIVE, AT(scene_membrane, condition.law.prestress)},
-    {"curve", VALUE_CURVE, AT(scene_membrane, curve)},
+    {"curve", VALUE_CURVE, AT(scene_membrane, curve), .with = {"prestress"}},
     {NULL}};
 
 static const struct scene_key initial_keys[] = {

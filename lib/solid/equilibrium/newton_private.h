@@ -24,10 +24,9 @@ struct newton {
     double *step;                               /* the minimum of the model, from u; */
     struct newton_forces model;                 /* and minus the gradient of the model there */
     double *search, *product, *scaled, *before; /* of the conjugate gradients */
-    double *last;                               /* change of u since the last increment began, */
-    double last_change;                         /* that of the load then; 0: none yet */
-    double *last_factor;                        /* and of the load curves */
-    double *factor_change;                      /* of the load curves in this increment */
+    double *last;                               /* the last increment's change of u, */
+    double last_change;                         /* and of the load; 0: none yet */
+    double *factor_change;                      /* of the load curves */
     double spacing, body_size;                  /* mean spacing of the nodes; diagonal of their box, m */
     double load, load_change;                   /* share of the load at u; the next increment, */
     double most_change;                         /* and its most */

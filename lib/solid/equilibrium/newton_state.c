@@ -15,7 +15,6 @@ enum status newton_allocate(struct newton *n, struct error *error)
     for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++) {
         RETURN_IF_ERROR(NEW_ARRAY(vectors[i], n->size, error));
     }
-    RETURN_IF_ERROR(NEW_ARRAY(&n->last_factor, n->system->curve_count, error));
     return NEW_ARRAY(&n->factor_change, n->system->curve_count, error);
 }
 
@@ -23,7 +22,7 @@ void newton_release(struct newton *n)
 {
     FREE_ALL(n->at_u.smooth, n->at_u.contact, n->at_trial.smooth, n->at_trial.contact, n->model.smooth,
              n->model.contact, n->trial, n->step, n->search, n->product, n->scaled, n->before, n->last,
-             n->kept, n->last_factor, n->factor_change);
+             n->kept, n->factor_change);
     preconditioner_free(&n->preconditioner);
 }
 
@@ -36,7 +35,6 @@ enum status newton_visit(void *run, const struct state *state, struct error *err
         {"u", STATE_NUMBERS, n->u, n->size},
         {"last", STATE_NUMBERS, n->last, n->size},
         {"last_change", STATE_NUMBERS, &n->last_change, 1},
-        {"last_factor", STATE_NUMBERS, n->last_factor, n->system->curve_count},
         {"load", STATE_NUMBERS, &n->load, 1},
         {"load_change", STATE_NUMBERS, &n->load_change, 1},
         {"radius", STATE_NUMBERS, &n->radius, 1},

@@ -87,26 +87,12 @@ static void meet_conditions(struct newton *n)
     constraint_project(&n->preconditioner.constraint, n->factor_change, n->step);
 }
 
-/* The next increment by the last one: of the load curves, as far as they are alike; of time where they rest.
- */
-static double by_last(const struct newton *n, double change)
-{
-    double along = 0.0, square = 0.0;
-    if (n->last_change == 0.0) {
-        return 0.0;
-    }
-    for (int64_t i = 0; i < n->system->curve_count; i++) {
-        along += n->factor_change[i] * n->last_factor[i];
-        square += n->last_factor[i] * n->last_factor[i];
-    }
-    return square > 0.0 ? along / square : change / n->last_change;
-}
-
-/* Start the model's step at what continues the last increment with its corrections, which may go through a
- * surface where there are contacts, and follows the conditions. */
+/* Start the model's step at what continues the last increment and follows the conditions. */
 static void predict(struct newton *n, double change)
 {
-    double part = n->system->contact_count == 0 ? by_last(n, change) : 0.0;
+    bool goes_on =
+        n->last_change != 0.0 && n->system->contact_count == 0; /* else it may go through a surface */
+    double part = goes_on ? change / n->last_change : 0.0;
     for (int64_t i = 0; i < n->size; i++) {
         n->step[i] = part * n->last[i];
     }
@@ -159,7 +145,6 @@ bool newton_take_increment(struct newton *n, double from, double change)
     }
     n->length = part < 1.0 ? INFINITY : n->length;
     n->last_change = n->load - from;
-    memcpy(n->last_factor, n->factor_change, (size_t)n->system->curve_count * sizeof *n->last_factor);
     memcpy(n->last, n->step, (size_t)n->size * sizeof *n->last);
     take_step(n);
     n->load_change = fmin(n->most_change, fmax(2.0 * n->last_change, shorter * change));
@@ -269,9 +254,6 @@ bool newton_correct(struct newton *n)
     if (n->uphill > most_uphill && n->kept_length > least) {
         go_back(n);
         return true;
-    }
-    for (int64_t i = 0; i < n->size; i++) {
-        n->last[i] += n->step[i];
     }
     take_step(n);
     n->judged = n->judged && n->length < same_state * n->report->move;
