@@ -35,8 +35,8 @@ SCENE
 
 @test "a checkpoint is a stream that can be looked into" {
     begin_and_end TERM run.scene
-    mts list run.ckpt | grep -q '^checkpoint	i8	1	1	version='
-    mts list run.ckpt | grep -q '^state.contact.0.multiplier	f8'
+    mts list run.ckpt | has '^checkpoint	i8	1	1	version='
+    mts list run.ckpt | has '^state.contact.0.multiplier	f8'
     mts check run.ckpt
     mts print u.last run.ckpt | awk 'END { exit NR != 64 }'
     tovtk -o last.vtu run.ckpt

@@ -32,6 +32,9 @@ setup() {
     enter
 }
 
+# has [OPTION] PATTERN: a line of all of the input matches; grep -q would end before what writes into the pipe.
+has() { grep "$@" > /dev/null; }
+
 # section HEADER ROW...: of a text stream
 section() {
     printf '# %s\n' "$1"

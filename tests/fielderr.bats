@@ -262,7 +262,7 @@ END
 @test "sizefield: the same sizes as a stream" {
     cloud -d 3 -k regular -n 4 --box 0,0.1,0,0.1,0,0.1 --field quadratic -o cube.mts
     sizefield -t cube.mts > sizes.dat
-    mts list sizes.dat | cut -f 1 | tr '\n' ' ' | grep -qx 'nodes.x cells size '
+    mts list sizes.dat | cut -f 1 | tr '\n' ' ' | has -x 'nodes.x cells size '
     mts print cells sizes.dat | wc -l > count
     [ "$(cat count)" -eq $(($(mts print cells cube.mts | wc -l) + 3 * 6 * 3 * 3 * 2)) ]
     # Corners and sizes of the simplices of the view, but for the order.

@@ -31,7 +31,7 @@ faulty() {
     names overlaid > list
     grep -q "elements in several sets, taken for the last: [1-9]" said
     printf '*NSET, NSET=gen, GENERATE\n1, 3\n2, 200, 2\n' | cat "$corpus/inp/solid" - > ranges
-    names ranges | grep -q ,gen
+    names ranges | has ,gen
     grep -q "set 'gen': of what its lines of GENERATE name, only [4-9] of 103 exist" said
     [ "$(names "$corpus/inp/part")" = "Set-1 edge Set-1" ]
     [ "$(mts print facets body.mts)" = "1 2" ]
@@ -43,8 +43,8 @@ faulty() {
         '*ELEMENT,TYPE=t2d3,ELSET=low' 2,1,5,2 > line
     [ "$(names line)" = "b low" ]
     [ "$(mts print facets body.mts)" = "0 1" ]
-    names - < "$corpus/inp/solid" | grep -q Low
-    sed 's/NSET=base/NSET="the base"/; s/^base/"the base"/' "$corpus/inp/solid" | names - | grep -q Nall,the_base,some,upper,points
+    names - < "$corpus/inp/solid" | has Low
+    sed 's/NSET=base/NSET="the base"/; s/^base/"the base"/' "$corpus/inp/solid" | names - | has Nall,the_base,some,upper,points
 }
 
 @test "decks of Abaqus: nodes of the assembly, reference points, are left out, and not taken for those of the part" {
@@ -301,7 +301,7 @@ END
         printf 'NRRD0004\ntype: uint8\ndimension: 3\nsizes: 4 4 4\nencoding: raw\ndata file: %s\n' $file > images/of.nhdr
         [ $file = own.raw ] || refused 2 "$file: is a link that leaves the folder of the header" voxels -h 2mm images/of.nhdr
     done
-    (cd images && { voxels -h 2mm of.nhdr 2>&1 || :; } | grep -q "no label")
+    (cd images && { voxels -h 2mm of.nhdr 2>&1 || :; } | has "no label")
     refused 2 "more data than 2 values" sample <(printf 'NRRD0004\ntype: uint8\ndimension: 2\nsizes: 1 2\nencoding: ascii\n\n1 2 300\n') cube.mts
     # A pipe by its name is read once.
     tomesh -u m -o body.msh <(cat cube.mts)

@@ -81,9 +81,9 @@ size_of() {
     for blade in branch:3 cross:4; do
         incise -v -s "${blade%:*}.tsv" -o cut.mts body.mts 2> said
         grep -q ' 0 nodes on the edge.*pieces: '"${blade#*:}, " said
-        mts check cut.mts | grep -q "${blade#*:} connected bodies"
+        mts check cut.mts | has "${blade#*:} connected bodies"
     done
-    incise -s across.tsv body.mts | incise -v -s down.tsv 2> said | mts check | grep -q '4 connected bodies'
+    incise -s across.tsv body.mts | incise -v -s down.tsv 2> said | mts check | has '4 connected bodies'
     grep -q ' 0 nodes on the edge.*pieces: 4, ' said
     # three half-planes from a line, of which two face one way round it, one the other
     awk 'BEGIN { split("90 210 330", at); for (i = 1; i <= 3; i++) { a = at[i] / 57.29578; p = ".0481 .0527"; q = .0481 + cos(a) " " .0527 + sin(a)
@@ -137,7 +137,7 @@ END
     incise -v -r lump body.mts 2> said > left.mts
     grep -qE '^incise: lump: [0-9]+ cells taken out$' said
     mts check left.mts
-    mts list left.mts | grep -q '^cells.region.*names=body$'
+    mts list left.mts | has '^cells.region.*names=body$'
     # five of the six sides of the lump of .03 x .02 x .03 m are within; cells are jittered
     awk -v a="$(size_of 'lump|wall' left.mts)" -v body="$(size_of body body.mts)" -v b="$(size_of body left.mts)" 'BEGIN { exit !(a > 2e-3 && a < 6e-3 && body / b - 1 < 1e-12) }'
     # an octahedron about (.05, .03, .025) of radius .024 m, closed: its inside is taken out, its front face stays

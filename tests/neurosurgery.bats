@@ -47,7 +47,7 @@ scenario() {
 @test "a resection: the cavity has a wall, fluid stands below a level; points of cortex and cavity predict most of the shift" {
     scenario resection 14mm 13mm
     awk -F '\t' 'NR == 1 { exit !($2 > 3 && $3 < 0.6 * $2 && $4 < 0.35 * $2) }' rows
-    mts list out/neurosurgery/resection/predicted.body.mts | grep -q '^facets.set.*names=.*parenchyma|tumour'
+    mts list out/neurosurgery/resection/predicted.body.mts | has '^facets.set.*names=.*parenchyma|tumour'
     awk 'NF != 7 || $7 != 0.5 { bad = !/^#/ } END { exit bad }' out/neurosurgery/resection/measured.tsv
 }
 

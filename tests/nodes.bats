@@ -107,23 +107,23 @@ volumes() {
     run -0 --separate-stderr nodes -u mm -t blank.msh
     [[ "$stderr" == *"group 'the body' is named 'the_body' here"* ]]
     [[ "$output" == *"names=the_body"* ]]
-    nodes -l blank.msh | grep -q '^the_body'
+    nodes -l blank.msh | has '^the_body'
     square | sed 's/"diagonal"/"a b"/; s/"bottom"/"a,b"/' > same.msh
     run -0 --separate-stderr nodes -u mm -t same.msh
     [[ "$stderr" == *"group 'a,b' is named 'a_b_2' here"*"group 'a b' is named 'a_b_3' here"* ]]
     square | sed 's/"diagonal"/"bottom"/' > twice.msh
-    nodes -l twice.msh | grep -qx "$(printf 'bottom_3\t1\t3\t1')"
-    nodes -u mm -t twice.msh 2> said | grep -q '^# facets.set .* names=bottom_2$'
+    nodes -l twice.msh | has -x "$(printf 'bottom_3\t1\t3\t1')"
+    nodes -u mm -t twice.msh 2> said | has '^# facets.set .* names=bottom_2$'
     square | sed '/^\$PhysicalNames/,/^\$EndPhysicalNames/d' > unnamed.msh
-    nodes -u mm -t unnamed.msh | grep -q '^# cells.region .* names=group_4$'
+    nodes -u mm -t unnamed.msh | has '^# cells.region .* names=group_4$'
 }
 
 @test "any unit, a body of an implausible size, and a report" {
     square > square.msh
     nodes -u 0.0254 -t square.msh 2> said > inch.mts
     [ "$(rows nodes.x inch.mts | tail -n 1)" = "0 0.025399999999999999" ]
-    nodes -u 20 square.msh 2>&1 > /dev/null | grep -q "nodes: the body is 28.3 m across: is the unit of -u right?"
-    nodes -u um square.msh 2>&1 > /dev/null | grep -q "nodes: the body is 1.41e-06 m across"
+    nodes -u 20 square.msh 2>&1 > /dev/null | has "nodes: the body is 28.3 m across: is the unit of -u right?"
+    nodes -u um square.msh 2>&1 > /dev/null | has "nodes: the body is 1.41e-06 m across"
     run ! grep -q across said
     nodes -u m -v square.msh 2> said > /dev/null
     grep -q "nodes: 4 nodes, 2 cells, box 0 0 to 1 1 m, area 1 m2, 1 connected body" said
@@ -183,9 +183,9 @@ volumes() {
         done
     done
     cube hex -order 2
-    nodes -u m -t cube.msh 2> said | volumes /dev/stdin | grep -qx '1 1'
+    nodes -u m -t cube.msh 2> said | volumes /dev/stdin | has -x '1 1'
     cube hex -order 2 -setnumber Mesh.SecondOrderIncomplete 1
-    nodes -u m -t cube.msh 2> said | volumes /dev/stdin | grep -qx '1 1'
+    nodes -u m -t cube.msh 2> said | volumes /dev/stdin | has -x '1 1'
     cube tet -order 3
     refused 2 "mesh with order 1" nodes -u m cube.msh
 }
@@ -222,7 +222,7 @@ Physical Volume("all") = {1, 2}; Mesh.MeshSizeMin = 1;
 END
     gmsh -v 1 -3 touching.geo -o touching.msh
     nodes -u m -v -t touching.msh 2> said > touching.mts
-    mts check touching.mts | grep -qx 'cells: 2 connected bodies'
+    mts check touching.mts | has -x 'cells: 2 connected bodies'
     grep -q "nodes at the same place, of different bodies: [0-9]* pairs: the bodies are not joined there" said
     grep -q "2 connected bodies" said
     grep -q "cells in two physical groups, or there twice, taken once: [0-9]" said
@@ -247,7 +247,7 @@ END
     sed 's/^8$/10/; s/^8 2 1 0$/&\n9 1 0 0\n10 1 1 0/; s/2 2 6 7 5/2 9 6 7 5/; s/8 3$/8 10/' hang.msh > apart.msh
     nodes -u cm apart.msh > apart.mts 2> said
     grep -q "^nodes: nodes on a facet of another body or face of a slit, without being its corners: 1, the first at (0.01, 0.005) m: " said
-    mts check apart.mts | grep -q '^cells: nodes on a facet of another body'
+    mts check apart.mts | has '^cells: nodes on a facet of another body'
     sed 's/^3$/6/; s/^3 3 2.*/&\n4 1 2 9 9 2 3\n5 1 2 9 9 2 5\n6 1 2 9 9 5 3/' hang.msh | nodes -u cm > lips.mts 2> said
     grep -q "nodes on a facet of another body or face of a slit, without being its corners: 1, " said
     printf '# mts 1\n# nodes.x f8 5 2 enc=text unit=m\n0 0\n1 0\n0 1\n0.5 0.5\n1 1\n\n\n' > hang.mts
@@ -276,11 +276,11 @@ END
     refused 2 "not a mesh of gmsh, Abaqus, CalculiX, FEBio or VTK: nodes -h says how to make one" nodes -u m body.stl
     printf 'Merge "body.stl";\nSurface Loop(1) = {1};\nVolume(1) = {1};\n' > fill.geo
     gmsh -v 1 -3 fill.geo -o filled.msh
-    nodes -u m -t filled.msh 2> /dev/null | volumes /dev/stdin | grep -qx '1 1'
+    nodes -u m -t filled.msh 2> /dev/null | volumes /dev/stdin | has -x '1 1'
     for ending in mesh unv bdf; do
         gmsh -v 1 -3 bare.geo -o foreign.$ending
         gmsh -v 1 foreign.$ending -save -o body.msh
-        nodes -u m -t body.msh 2> said | volumes /dev/stdin | grep -qx '1 1'
+        nodes -u m -t body.msh 2> said | volumes /dev/stdin | has -x '1 1'
     done
     /usr/bin/python3 -c 'import meshio as m, numpy as n; a = m.read("filled.msh"); t = a.cells_dict["tetra"]
 m.Mesh(a.points, [("tetra", t)], cell_data={"tetgen:ref": [n.arange(len(t)) // (len(t) - 1)]}).write("body.node")' > said 2>&1
@@ -293,6 +293,6 @@ m.Mesh(a.points, [("tetra", t)], cell_data={"tetgen:ref": [n.arange(len(t)) // (
     for surface in body.off body.obj; do
         /usr/bin/python3 -c "import meshio as m; m.write('body.stl', m.read('$surface'))" > said 2>&1
         gmsh -v 1 -3 fill.geo -o filled.msh
-        nodes -u m -t filled.msh 2> said | volumes /dev/stdin | grep -qx '1 1'
+        nodes -u m -t filled.msh 2> said | volumes /dev/stdin | has -x '1 1'
     done
 }

@@ -115,7 +115,7 @@ END
     wait $! || status=$?
     [ $status -eq 143 ]
     [ "$(tail -n 1 u.dat)" = "# stopped $(sed 's/^mtled: //' said)" ]
-    mts recover u.dat 2> note | mts list | grep -q '^u.frame.1	'
+    mts recover u.dat 2> note | mts list | has '^u.frame.1	'
 }
 
 @test "frames are written as they come, in constant memory; more than a stream holds are refused before the run" {
@@ -128,7 +128,7 @@ END
     kill -KILL $!
     wait $! || true
     awk '{ m[NR] = $1 } END { exit !(m[1] > 0 && m[2] < m[1] + 500) }' kilobytes
-    mts recover u.dat.part 2> note | mts list | grep -q '^u.frame.1000	'
+    mts recover u.dat.part 2> note | mts list | has '^u.frame.1000	'
     sed -i 's/^interval.*/interval = 0.1/' run.scene
     refused 2 "80000 frames of 2 sections each, where a stream has at most 16384 sections" mtled -o v.dat run.scene table.mts
     [ ! -e v.dat.part ]
@@ -152,6 +152,6 @@ END
 @test "a long run: memory as at the start, energy kept" { # longer: make soak
     bash "$BATS_TEST_DIRNAME/../pipelines/soak/soak.sh" 100000 > table
     growth=1.02
-    ! nm "$(type -P mtled)" | grep -q ' __asan_init$' || growth=10 # it keeps what is freed for a while
+    ! nm "$(type -P mtled)" | has ' __asan_init$' || growth=10 # it keeps what is freed for a while
     awk -v growth=$growth 'NR == 2 && $1 >= 100000 && $2 > 0 && $3 <= $2 * growth && $4 < 2e-3 { good = 1 } END { exit !good }' table
 }

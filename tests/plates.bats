@@ -123,7 +123,7 @@ crushed() {
     run --separate-stderr mtled -o u.dat allowed.scene fine.mts
     [ "$status" -eq 0 ]
     [[ $stderr == "mtled: allowed.scene: the body folds from 0."* && $(wc -l <<< "$stderr") -eq 1 ]]
-    mts list u.dat | grep -q '^u	f8	289'
+    mts list u.dat | has '^u	f8	289'
     crushed 'folds = maybe' > bad.scene
     refused 2 "folds: 'maybe' is none of refused, allowed" mtled bad.scene fine.mts
 }
@@ -213,7 +213,7 @@ buckled() {
         [ $status -eq 143 ]
         mtled -c run.ckpt -o u.dat "$1" table.mts 2> note
         cmp <(bare whole.dat) <(bare u.dat)
-        grep "$3" said.whole | grep -qFx -f - note
+        grep "$3" said.whole | has -Fx -f - note
     }
     cloud -d 2 -k regular -n 17 --box 0,0.1,0,0.1 | shapefn > table.mts 2> note
     crushed 'folds = allowed' | sed 's/tolerance = 1e-3/tolerance = 1e-6/' > fold.scene

@@ -37,7 +37,7 @@ exact='{ e = 100 + 50 * sin(300 * $1) * cos(200 * $2 + 1) + 30 * sin(250 * $3) }
 
 @test "the nodes by default, integration points, and a table of landmarks in its own unit" {
     sample -i cubic scan.nii.gz cube.mts > nodes.tsv
-    head -n 1 nodes.tsv | grep -qx '# x y z value'
+    head -n 1 nodes.tsv | has -x '# x y z value'
     tail -n +2 nodes.tsv | cut -d ' ' -f 1-3 | cmp - <(mts print nodes.x cube.mts)
     ipoints cube.mts | sample -i cubic -a points.x scan.nii.gz > points.tsv
     [ "$(wc -l < points.tsv)" -gt "$(wc -l < nodes.tsv)" ]
@@ -62,7 +62,7 @@ exact='{ e = 100 + 50 * sin(300 * $1) * cos(200 * $2 + 1) + 30 * sin(250 * $3) }
     mts check with.mts
     [ "$(mts list with.mts | grep -c .)" -eq $(($(mts list cube.mts | grep -c .) + 1)) ]
     mts print T1 with.mts | cmp - <(sample scan.nii.gz cube.mts | awk '!/^#/ { print $4 }')
-    sample --section T1 -t scan.nii.gz < cube.mts | grep -q '^# T1 f8 125 1'
+    sample --section T1 -t scan.nii.gz < cube.mts | has '^# T1 f8 125 1'
 }
 
 @test "outside of the image: an error that names the first, or a value that is reported" {
@@ -95,7 +95,7 @@ exact='{ e = 100 + 50 * sin(300 * $1) * cos(200 * $2 + 1) + 30 * sin(250 * $3) }
     shapefn square.mts 2> note > table.mts
     nifti step same.nii 50 50
     sample --material law.tsv same.nii table.mts > stiffness.tsv
-    head -n 1 stiffness.tsv | grep -qx '# x y E nu'
+    head -n 1 stiffness.tsv | has -x '# x y E nu'
     mtled -b uniform.scene table.mts | mts print u > uniform.u
     mtled -b table.scene table.mts | mts print u > table.u
     paste uniform.u table.u | awk '{ for (i = 1; i <= 2; i++) { d = $i - $(i + 2); if (!(d * d < 1e-24)) exit 1 } } END { exit NR == 0 }'

@@ -103,7 +103,7 @@ END
     [[ "$(report region body)" == "1308, volume 0.001744 m3"* ]]
     [[ "$(report region lump)" == "192, volume 0.000256 m3"* ]]
     tag -m a=floor -d b g.mts > h.mts
-    mts list h.mts | grep -q 'facets.set.*names=floor$'
+    mts list h.mts | has 'facets.set.*names=floor$'
     mts print cells.region g.mts | cmp - <(mts print cells.region h.mts)
     mts print facets h.mts | cmp - <(mts print facets g.mts | head -n "$(mts print facets h.mts | wc -l)")
     refused 2 "there is one of that name already: --replace replaces it" tag -f a=all g.mts
@@ -116,7 +116,7 @@ END
     refused 2 "its cells would belong to no region" tag -d lump g.mts
     tag -r a=high:x,10% g.mts > twice.mts 2> /dev/null
     refused 2 "both facets and region have that name: write facets:a or region:a" tag -m a=c twice.mts
-    tag -m region:a=c twice.mts | mts list | grep -q 'cells.region.*names=body,lump,c$'
+    tag -m region:a=c twice.mts | mts list | has 'cells.region.*names=body,lump,c$'
     tag -d a -d b g.mts | mts list > list
     run -1 grep -q facets list
 }
@@ -155,7 +155,7 @@ END
 @test "what depends on facets leaves the stream; the pipeline runs with groups" {
     bare_block
     shapefn bare.mts 2> /dev/null > table.mts
-    tag -n tip=high:z,10% table.mts 2> said | mts list | grep -q '^edge.phi'
+    tag -n tip=high:z,10% table.mts 2> said | mts list | has '^edge.phi'
     [ ! -s said ]
     tag -f tip=high:z,10% table.mts 2> said > stale.mts
     [ "$(cat said)" = "tag: facets have changed: the sections of support and shapefn are left out" ]

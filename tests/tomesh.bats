@@ -33,7 +33,7 @@ same_body() {
     cloud -d 3 -k regular -n 3 --box 0,0.1,0,0.1,0,0.1 |
         tag -n tip=ball:0.1,0.1,0.1,0.03 -n mid=ball:0.05,0.05,0.05,0.03 -n low=plane:0,0,0,0,0,1 -r lump=ball:0.1,0.1,0.1,0.06 > solid.mts 2> note
     for body in plane solid; do
-        mts list $body.mts | grep -q 'sets.ptr.*names=tip,mid,low'
+        mts list $body.mts | has 'sets.ptr.*names=tip,mid,low'
         tomesh -u 0.5 -o $body.msh $body.mts
         nodes -u 0.5 $body.msh | tomesh -u 0.5 -o $body.inp
         nodes -u 0.5 $body.inp > again.mts
@@ -41,8 +41,8 @@ same_body() {
     done
     gmsh -v 1 solid.msh -save -o gmsh.inp # with an element set for each physical group behind those of the entities
     nodes -u 0.5 gmsh.inp 2> said > gmsh.mts
-    mts list gmsh.mts | grep -q '^cells.region.*names=body,lump$'
-    mts list gmsh.mts | grep -q '^facets.set.*names=xmin,xmax,ymin,ymax,zmin,zmax$'
+    mts list gmsh.mts | has '^cells.region.*names=body,lump$'
+    mts list gmsh.mts | has '^facets.set.*names=xmin,xmax,ymin,ymax,zmin,zmax$'
     /usr/bin/python3 -c 'import meshio as m; a = m.read("solid.msh"); m.Mesh(a.points, [c for c in a.cells if c.type != "vertex"]).write("meshio.inp")' > said 2>&1
     nodes -u 0.5 meshio.inp 2> said | mts print nodes.x | cmp - <(mts print nodes.x solid.mts)
 }

@@ -165,7 +165,7 @@ squeezed_cube() {
     [ "$(array run-0001.vtu stress.principal)" = $'4 2 1\n3 3 3' ]
     [ "$(array run-0001.vtu pressure | xargs)" = "-2.3333333333333335 -3" ]
     run -1 grep stress run-0000.vtu run-0002.vtu
-    for file in run-000?.vtu; do vtu arrays $file | grep -qx 'u points 3 .*'; done
+    for file in run-000?.vtu; do vtu arrays $file | has -x 'u points 3 .*'; done
 }
 
 @test "wrong use: one line and status 2" {

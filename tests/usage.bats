@@ -59,7 +59,7 @@ setup() {
         grep -q tool_image_method "$top/tools/$tool.c" && shared+=("$top/tools/common/images/images.c")
         for name in $("$tool" -h | sed -n '/^Options:/,/^$/s/^\(  -.,\|     \) --\([a-z-]*\).*/\2/p'); do
             [ "$name" = output ] || { [ "$name" = text ] && grep -qE 'tool_(write|copy)[(]|tool->text|comparison_parse' "$top/tools/$tool.c"; } ||
-                sed '/^static const char usage/,/;$/d' "$top/tools/$tool.c" "${shared[@]}" | grep -q "\"$name\"" ||
+                sed '/^static const char usage/,/;$/d' "$top/tools/$tool.c" "${shared[@]}" | has "\"$name\"" ||
                 { echo "$tool: --$name"; false; }
         done
     done

@@ -26,9 +26,9 @@ END
         cmp 1.mts $threads.mts
     done
     mts check 1.mts
-    mts list 1.mts | grep -q 'nbr\.around'
-    mts list 1.mts | grep -q 'nbr\.image'
-    mts text 1.mts | grep '^# support.radius' | grep -q 'reach=cells'
+    mts list 1.mts | has 'nbr\.around'
+    mts list 1.mts | has 'nbr\.image'
+    mts text 1.mts | grep '^# support.radius' | has 'reach=cells'
 }
 
 @test "a body too small for the basis is named, however near the others are" {
@@ -49,7 +49,7 @@ END
 
 @test "--reach is recorded, and refused where it cannot be" {
     cloud -d 2 -k regular -n 5 --box 0,0.1,0,0.1 > square.mts
-    support --reach distance -t square.mts 2> notes | grep '^# support.radius' | grep -q 'reach=distance'
+    support --reach distance -t square.mts 2> notes | grep '^# support.radius' | has 'reach=distance'
     support -v --reach distance -o lists.mts square.mts 2> notes
     grep -q 'neighbours by distance alone' notes
     # Nothing is between the nodes of a square: the same lists.
@@ -59,7 +59,7 @@ END
     # Without cells: by distance, and cells cannot be asked for.
     mts text square.mts | awk '/^# [^@]/ { skip = $2 == "cells" || $2 ~ /^(facets|cells)/ } !skip' | sed '/^# end/d' > cloud.dat
     printf '# points.x f8 1 2 enc=text unit=m\n0.05 0.05\n\n\n# end 2\n' >> cloud.dat
-    support -v -t cloud.dat 2> notes | grep '^# support.radius' | grep -q 'reach=distance'
+    support -v -t cloud.dat 2> notes | grep '^# support.radius' | has 'reach=distance'
     grep -q 'neighbours by distance alone' notes
     refused 2 "the input has no cells" support --reach cells cloud.dat
 }

@@ -96,7 +96,7 @@ END
         shared=$(nifti segments ball.nii.gz ball.seg.nrrd $layers 'Left lung' 'tumour, solid')
         voxels -h 6mm ball.seg.nrrd 2> said | mts text | bare | cmp expected -
         grep -q "names are changed to what scenes can hold, as 'Left lung' to Left_lung" said
-        [ $layers = 1 ] || grep -q "segments overlap in $shared voxels, first 'Left lung' and 'tumour, solid': the later is taken" said
+        [ $layers = 1 ] || has "segments overlap in $shared voxels, first 'Left lung' and 'tumour, solid': the later is taken" said
     done
     voxels -h 6mm -l <(printf '1 Left_lung\n2 tumour__solid\n') ball.seg.nrrd 2> said | mts text | bare | cmp expected -
     nifti segments ball.nii.gz ball.seg.nrrd 1 lung lung
@@ -119,7 +119,7 @@ END
     voxels -h 4mm -v -l five atlas.nii.gz > body.mts 2> said
     [ -z "$(mts check body.mts)" ]
     [ "$(names cells.region body.mts | tr '\n' ' ')" = "a b c d e " ]
-    names sets.ptr body.mts | grep -qx 'a|b'
+    names sets.ptr body.mts | has -x 'a|b'
     for name in a b c d e; do
         read -r before after < <(said $name)
         near "$after" "$before" 0.01
@@ -193,7 +193,7 @@ sizes() {
 @test "a slice, its own or chosen from a body" {
     phantom two@slice > slice.nii.gz
     voxels -h 4mm -v slice.nii.gz > flat.mts 2> said
-    mts list flat.mts | grep -q 'cols=x,y$'
+    mts list flat.mts | has 'cols=x,y$'
     [ -z "$(mts check flat.mts)" ]
     press flat.mts 2
     phantom two > body.nii.gz
@@ -237,7 +237,7 @@ image = nib.load("sphere.nii.gz")
 z = (image.affine @ np.vstack([np.indices(image.shape).reshape(3, -1), np.ones(image.shape).reshape(1, -1)]))[2].reshape(image.shape)
 nib.save(nib.Nifti1Image(((np.asarray(image.dataobj) > 0) & (z > 14)).astype(np.uint8), None, image.header), "mask.nii.gz")
 END
-    voxels -h 5mm sphere.nii.gz | tag -f 'cap=ball:0,0,0.024,0.014' | mts list | grep -q 'names=label_1|outside,cap'
+    voxels -h 5mm sphere.nii.gz | tag -f 'cap=ball:0,0,0.024,0.014' | mts list | has 'names=label_1|outside,cap'
     voxels -h 5mm sphere.nii.gz 9=mask.nii.gz | tag -r label_1=all --replace -m 'label_9|outside=part' > body.mts 2> said
     [ -z "$(mts check body.mts)" ]
     [ "$(names cells.region body.mts)" = label_1 ]
