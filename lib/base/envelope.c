@@ -3,9 +3,9 @@
 #include "base/chunks.h"
 #include "base/lists.h"
 #include "base/memory.h"
+#include "base/processor.h"
 
 #include <math.h>
-#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -18,6 +18,10 @@ static const double weak_pivot = 1e-3;
 static const int64_t most_entries = 8;
 
 enum { ENTRIES_FOR_THREAD = 50000 }; /* see chunks_of */
+
+/* The rows of a group: a register of processors with AVX-512. */
+typedef double eight __attribute__((vector_size(64), aligned(8), may_alias));
+typedef double four __attribute__((vector_size(32), aligned(8), may_alias));
 
 /* Reverse Cuthill-McKee: breadth first from a node of least degree in each component. order[i] is the old
  * row; the long rows are last. */
@@ -61,13 +65,13 @@ static enum status order_rows(int64_t n, const int64_t *ptr, const int64_t *colu
 }
 
 /* Find the first rows of the diagonal blocks, from the end: a block begins at a row if no later row has an
- * entry before it. */
-static void find_blocks(struct envelope *factor)
+ * entry before it. first[]: of each row. */
+static void find_blocks(struct envelope *factor, const int64_t *first)
 {
     int64_t n = factor->n, least = n, *block = factor->block, blocks = 0;
     block[n] = n;
     for (int64_t i = n - 1; i >= 0; i--) {
-        least = factor->first[i] < least ? factor->first[i] : least;
+        least = first[i] < least ? first[i] : least;
         if (least == i) {
             blocks++;
             block[n - blocks] = i;
@@ -77,96 +81,170 @@ static void find_blocks(struct envelope *factor)
     factor->block_count = blocks;
 }
 
-/* The threads that are worth using for all rows. */
-static inline int threads_for(const struct envelope *factor)
+/* Divide each block into groups; the first column of a group is that of a group. */
+static void find_groups(struct envelope *factor, const int64_t *first)
 {
-    return factor->n > 0 ? chunks_of(factor->start[factor->n], ENTRIES_FOR_THREAD).threads : 1;
+    int64_t count = 0, size = 0;
+    for (int64_t b = 0; b < factor->block_count; b++) {
+        int64_t begin = factor->block[b], end = factor->block[b + 1];
+        factor->block[b] = count;
+        for (int64_t i = begin; i < end; i += ENVELOPE_GROUP, count++) {
+            int64_t last = i + ENVELOPE_GROUP < end ? i + ENVELOPE_GROUP : end, least = i;
+            for (int64_t k = i; k < last; k++) {
+                least = first[k] < least ? first[k] : least;
+            }
+            least -= (least - begin) % ENVELOPE_GROUP;
+            factor->groups[count] = (struct envelope_group){i, last - i, least, size};
+            size += (i + ENVELOPE_GROUP - least) * ENVELOPE_GROUP;
+        }
+    }
+    factor->block[factor->block_count] = factor->group_count = count;
+    factor->size = size;
 }
 
-/* The envelope of the reordered matrix, filled with its lower triangle. */
-static enum status fill(int64_t n, const int64_t *ptr, const int64_t *column, const double *value,
+static double *column_of(const struct envelope *factor, const struct envelope_group *group, int64_t column)
+{
+    return factor->value + group->start + (column - group->first) * ENVELOPE_GROUP;
+}
+
+/* The threads that are worth using for all blocks. */
+static inline int threads_for(const struct envelope *factor)
+{
+    return factor->block_count > 1 ? chunks_of(factor->size, ENTRIES_FOR_THREAD).threads : 1;
+}
+
+/* Lay out the envelope of the reordered matrix, whose rows are `width` for each of the graph. */
+static enum status lay_out(const int64_t *ptr, const int64_t *column, int64_t width, struct envelope *factor,
+                           struct error *error)
+{
+    NEW_SCRATCH(int64_t, first, factor->n, error);
+    for (int64_t i = 0; i < factor->n; i++) {
+        factor->place[factor->order[i]] = i;
+    }
+    for (int64_t i = 0; i < factor->n; i++) {
+        int64_t node = factor->order[i] / width;
+        first[i] = i;
+        for (int64_t k = ptr[node]; k < ptr[node + 1]; k++) {
+            int64_t other = factor->place[column[k] * width];
+            first[i] = other < first[i] ? other : first[i];
+        }
+    }
+    find_blocks(factor, first);
+    find_groups(factor, first);
+    for (int64_t g = 0; g < factor->group_count; g++) {
+        const struct envelope_group *group = &factor->groups[g];
+        for (int64_t i = 0; i < group->count; i++) {
+            factor->at[factor->order[group->row + i]] = group->start - group->first * ENVELOPE_GROUP + i;
+        }
+    }
+    return STATUS_OK;
+}
+
+/* The envelope, filled with the lower triangle of the matrix. */
+static enum status fill(const int64_t *ptr, const int64_t *column, const double *value,
                         struct envelope *factor, struct error *error)
 {
     free(factor->value);
     factor->value = NULL;
-    NEW_SCRATCH(int64_t, place, n, error);
-    for (int64_t i = 0; i < n; i++) {
-        place[factor->order[i]] = i;
-    }
-    for (int64_t i = 0; i < n; i++) {
-        int64_t row = factor->order[i];
-        factor->first[i] = i;
-        for (int64_t k = ptr[row]; k < ptr[row + 1]; k++) {
-            int64_t other = place[column[k]];
-            factor->first[i] = other < factor->first[i] ? other : factor->first[i];
-        }
-        factor->start[i + 1] = factor->start[i] + i - factor->first[i] + 1;
-    }
-    RETURN_IF_ERROR(NEW_ARRAY(&factor->value, factor->start[n], error));
-    for (int64_t i = 0; i < n; i++) {
-        int64_t row = factor->order[i];
-        for (int64_t k = ptr[row]; k < ptr[row + 1]; k++) {
-            int64_t other = place[column[k]];
-            if (other <= i) {
-                factor->value[factor->start[i] + other - factor->first[i]] += value[k];
-            }
+    RETURN_IF_ERROR(NEW_ARRAY(&factor->value, factor->size, error));
+    for (int64_t i = 0; i < factor->n; i++) {
+        for (int64_t k = ptr[i]; k < ptr[i + 1]; k++) {
+            envelope_add(factor, i, column[k], value[k], factor->value);
         }
     }
-    find_blocks(factor);
     return STATUS_OK;
 }
 
-/* Sum of a[k] b[k], in four partial sums, as a single one would wait for each addition. */
-static double product(int64_t count, const double *a, const double *b)
+/* rest[columns of `right`] -= left right^T, over `count` columns of both groups. */
+KERNEL_INLINE void subtract(int64_t count, const double *left, const double *right, double *rest)
 {
-    double sum[4] = {0.0, 0.0, 0.0, 0.0};
-    int64_t k = 0;
-    for (; k + 4 <= count; k += 4) {
-        for (int i = 0; i < 4; i++) {
-            sum[i] += a[k + i] * b[k + i];
+    enum { AT_ONCE = 4 }; /* columns */
+    for (int from = 0; from < ENVELOPE_GROUP; from += AT_ONCE) {
+        eight sum[AT_ONCE];
+        for (int k = 0; k < AT_ONCE; k++) {
+            sum[k] = *(const eight *)(rest + (from + k) * ENVELOPE_GROUP);
+        }
+        for (int64_t m = 0; m < count; m++) {
+            eight rows = *(const eight *)(left + m * ENVELOPE_GROUP);
+            for (int k = 0; k < AT_ONCE; k++) {
+                sum[k] -= right[m * ENVELOPE_GROUP + from + k] * rows;
+            }
+        }
+        for (int k = 0; k < AT_ONCE; k++) {
+            *(eight *)(rest + (from + k) * ENVELOPE_GROUP) = sum[k];
         }
     }
-    for (; k < count; k++) {
-        sum[0] += a[k] * b[k];
-    }
-    return (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }
 
-/* Row i of the factor, to be indexed by column. */
-static double *row_at(const struct envelope *factor, int64_t i)
+/* rest[column k] -= what the columns of `rest` before take; `other`: the rows of these columns. */
+KERNEL_INLINE void reduce(int64_t k, const double *other, double *rest)
 {
-    return factor->value + factor->start[i] - factor->first[i];
+    eight column = *(const eight *)(rest + k * ENVELOPE_GROUP);
+    for (int64_t c = 0; c < k; c++) {
+        column -= other[c * ENVELOPE_GROUP + k] * *(const eight *)(rest + c * ENVELOPE_GROUP);
+    }
+    *(eight *)(rest + k * ENVELOPE_GROUP) = column;
 }
 
-/* Compute row i of L, with `shift` times the diagonal entry added to that. It is dropped if its pivot is
- * below `least` times the diagonal entry. */
-static void factor_row(struct envelope *factor, int64_t i, double least, double shift)
+/* Compute row k of a group and the column below. The row is dropped if its pivot is below `least` times its
+ * diagonal entry. */
+KERNEL_INLINE void finish_row(const struct envelope_group *group, int64_t k, double diagonal, double least,
+                              double shift, double *rows, double *rest)
 {
-    double *row = row_at(factor, i), diagonal = row[i];
-    for (int64_t k = factor->first[i]; k < i; k++) {
-        const double *other = row_at(factor, k);
-        int64_t from = factor->first[i] > factor->first[k] ? factor->first[i] : factor->first[k];
-        row[k] = (row[k] - product(k - from, row + from, other + from)) / other[k];
+    double *column = rest + k * ENVELOPE_GROUP;
+    reduce(k, rest, rest);
+    double pivot = column[k];
+    if (!(pivot > least * diagonal) && !(shift > 0.0)) {
+        for (double *entry = rows + k; entry < column; entry += ENVELOPE_GROUP) {
+            *entry = 0.0;
+        }
+        pivot = INFINITY;
+    } else {
+        pivot = sqrt(fmax(pivot, 0.0) + shift * diagonal);
     }
-    double pivot = diagonal - product(i - factor->first[i], row + factor->first[i], row + factor->first[i]);
-    bool dropped = !(pivot > least * diagonal) && !(shift > 0.0);
-    if (dropped) {
-        memset(row + factor->first[i], 0, (size_t)(i - factor->first[i]) * sizeof *row);
+    for (int64_t i = 0; i < ENVELOPE_GROUP; i++) {
+        column[i] = i < k || i >= group->count ? 0.0 : column[i] / pivot;
     }
-    row[i] = dropped ? INFINITY : sqrt(fmax(pivot, 0.0) + shift * diagonal);
+    column[k] = pivot;
+}
+
+/* Compute the rows of group g of L, with `shift` times the diagonal entries added to these. */
+ALL_SETS static void factor_group(const struct envelope *factor, int64_t g, double least, double shift)
+{
+    const struct envelope_group *group = &factor->groups[g];
+    double *rows = column_of(factor, group, group->first), *rest = column_of(factor, group, group->row);
+    double diagonal[ENVELOPE_GROUP];
+    for (int64_t i = 0; i < group->count; i++) {
+        diagonal[i] = rest[i * (ENVELOPE_GROUP + 1)];
+    }
+    for (int64_t h = g - (group->row - group->first) / ENVELOPE_GROUP; h < g; h++) {
+        const struct envelope_group *before = &factor->groups[h];
+        int64_t from = group->first > before->first ? group->first : before->first;
+        double *there = column_of(factor, group, before->row);
+        const double *other = column_of(factor, before, before->row);
+        subtract(before->row - from, column_of(factor, group, from), column_of(factor, before, from), there);
+        for (int64_t k = 0; k < ENVELOPE_GROUP; k++) {
+            reduce(k, other, there);
+            *(eight *)(there + k * ENVELOPE_GROUP) /= other[k * (ENVELOPE_GROUP + 1)];
+        }
+    }
+    subtract(group->row - group->first, rows, rows, rest);
+    for (int64_t k = 0; k < group->count; k++) {
+        finish_row(group, k, diagonal[k], least, shift, rows, rest);
+    }
 }
 
 bool envelope_is_dropped(const struct envelope *factor, int64_t i)
 {
-    return isinf(row_at(factor, i)[i]);
+    return isinf(factor->value[factor->at[factor->order[i]] + i * ENVELOPE_GROUP]);
 }
 
-static void factor_rows(struct envelope *factor, double least, double shift)
+void envelope_factor(struct envelope *factor, double least, double shift)
 {
 #pragma omp parallel for schedule(static, 1) num_threads(threads_for(factor))
     for (int64_t b = 0; b < factor->block_count; b++) {
-        for (int64_t i = factor->block[b]; i < factor->block[b + 1]; i++) {
-            factor_row(factor, i, least, shift);
+        for (int64_t g = factor->block[b]; g < factor->block[b + 1]; g++) {
+            factor_group(factor, g, least, shift);
         }
     }
     factor->dropped = 0;
@@ -187,55 +265,122 @@ static enum status put_last(struct envelope *factor, struct error *error)
     return STATUS_OK;
 }
 
+enum status envelope_begin(int64_t n, const int64_t *ptr, const int64_t *column, int64_t width,
+                           struct envelope *factor, struct error *error)
+{
+    int64_t rows = n * width;
+    *factor = (struct envelope){.n = rows};
+    RETURN_IF_ERROR(NEW_ARRAY(&factor->order, rows, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&factor->place, rows, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&factor->at, rows, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&factor->groups, rows, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&factor->scratch, rows, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&factor->block, rows + 1, error));
+    RETURN_IF_ERROR(order_rows(n, ptr, column, factor->order, error));
+    for (int64_t i = rows - 1; i >= 0; i--) {
+        factor->order[i] = factor->order[i / width] * width + i % width;
+    }
+    return lay_out(ptr, column, width, factor, error);
+}
+
 enum status envelope_factorise(int64_t n, const int64_t *ptr, const int64_t *column, const double *value,
                                double least, double shift, struct envelope *factor, struct error *error)
 {
-    *factor = (struct envelope){.n = n};
-    RETURN_IF_ERROR(NEW_ARRAY(&factor->order, n, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&factor->first, n, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&factor->start, n + 1, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&factor->scratch, n, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&factor->block, n + 1, error));
-    RETURN_IF_ERROR(order_rows(n, ptr, column, factor->order, error));
-    RETURN_IF_ERROR(fill(n, ptr, column, value, factor, error));
-    factor_rows(factor, fmax(weak_pivot, least), shift);
+    RETURN_IF_ERROR(envelope_begin(n, ptr, column, 1, factor, error));
+    RETURN_IF_ERROR(fill(ptr, column, value, factor, error));
+    envelope_factor(factor, fmax(weak_pivot, least), shift);
     if (factor->dropped > 0) {
         RETURN_IF_ERROR(put_last(factor, error));
-        RETURN_IF_ERROR(fill(n, ptr, column, value, factor, error));
-        factor_rows(factor, least, shift);
+        RETURN_IF_ERROR(lay_out(ptr, column, 1, factor, error));
+        RETURN_IF_ERROR(fill(ptr, column, value, factor, error));
+        envelope_factor(factor, least, shift);
     }
     return STATUS_OK;
 }
 
 void envelope_free(struct envelope *factor)
 {
-    FREE_ALL(factor->order, factor->first, factor->start, factor->value, factor->scratch, factor->block);
+    FREE_ALL(factor->order, factor->place, factor->at, factor->groups, factor->value, factor->scratch,
+             factor->block);
     *factor = (struct envelope){0};
 }
 
-/* Solve for one block, y[begin .. end). */
-static void solve_rows(const struct envelope *factor, int64_t begin, int64_t end, const double *x, double *y)
+#define PAIRS(a, b, i, k) ((four){(a)[i], (b)[i], (a)[k], (b)[k]})
+
+/* y[count] -= the columns[count] of a group, each times x. */
+KERNEL_INLINE void subtract_columns(int64_t count, const double *columns, const eight *x, double *y)
 {
-    int64_t some = begin; /* the first row with a right-hand side */
-    while (some < end && x[factor->order[some]] == 0.0) {
-        y[some++] = 0.0;
-    }
-    if (some == end) {
-        return;
-    }
-    for (int64_t i = some; i < end; i++) {
-        const double *row = factor->value + factor->start[i];
-        int64_t first = factor->first[i];
-        y[i] = (x[factor->order[i]] - product(i - first, row, y + first)) / row[i - first];
-    }
-    for (int64_t i = end - 1; i >= begin; i--) {
-        const double *row = factor->value + factor->start[i];
-        int64_t first = factor->first[i];
-        double *restrict before = y + first, last = y[i] / row[i - first];
-        y[i] = last;
-        for (int64_t k = 0; k < i - first; k++) {
-            before[k] -= row[k] * last;
+    for (int64_t m = 0; m < count; m += 4) {
+        four half[4];
+        for (int k = 0; k < 4; k++) {
+            eight product = *(const eight *)(columns + (m + k) * ENVELOPE_GROUP) * *x;
+            half[k] = (four){product[0], product[1], product[2], product[3]} +
+                      (four){product[4], product[5], product[6], product[7]};
         }
+        four left = PAIRS(half[0], half[1], 0, 2) + PAIRS(half[0], half[1], 1, 3);
+        four right = PAIRS(half[2], half[3], 0, 2) + PAIRS(half[2], half[3], 1, 3);
+        *(four *)(y + m) -=
+            (four){left[0], left[1], right[0], right[1]} + (four){left[2], left[3], right[2], right[3]};
+    }
+}
+
+/* y = L^-1 x in the rows of a group, after those before. */
+KERNEL_INLINE void solve_group(const struct envelope *factor, const struct envelope_group *group,
+                               const double *x, double *y)
+{
+    const double *columns = factor->value + group->start;
+    int64_t count = group->row - group->first;
+    eight sum[4] = {{0.0}};
+    for (int64_t m = 0; m < count; m += 4) {
+        for (int k = 0; k < 4; k++) {
+            sum[k] += y[group->first + m + k] * *(const eight *)(columns + (m + k) * ENVELOPE_GROUP);
+        }
+    }
+    eight rest = -((sum[0] + sum[1]) + (sum[2] + sum[3]));
+    for (int64_t k = 0; k < group->count; k++) {
+        rest[k] += x[factor->order[group->row + k]];
+    }
+    for (int64_t k = 0; k < group->count; k++) {
+        const double *column = columns + (count + k) * ENVELOPE_GROUP;
+        y[group->row + k] = rest[k] / column[k];
+        rest -= y[group->row + k] * *(const eight *)column;
+    }
+}
+
+/* y = L^-T y in the rows of a group, after those behind, and y less what these take before. */
+KERNEL_INLINE void solve_group_back(const struct envelope *factor, const struct envelope_group *group,
+                                    double *y)
+{
+    const double *columns = factor->value + group->start;
+    int64_t count = group->row - group->first;
+    eight last = {0.0};
+    for (int64_t k = group->count - 1; k >= 0; k--) {
+        const double *column = columns + (count + k) * ENVELOPE_GROUP;
+        double sum = y[group->row + k];
+        for (int64_t i = k + 1; i < group->count; i++) {
+            sum -= column[i] * last[i];
+        }
+        y[group->row + k] = last[k] = sum / column[k];
+    }
+    subtract_columns(count, columns, &last, y + group->first);
+}
+
+/* Solve for block b. */
+ALL_SETS static void solve_block(const struct envelope *factor, int64_t b, const double *x, double *y)
+{
+    bool some = false; /* a right-hand side, in the groups so far */
+    for (int64_t g = factor->block[b]; g < factor->block[b + 1]; g++) {
+        const struct envelope_group *group = &factor->groups[g];
+        for (int64_t i = group->row; i < group->row + group->count; i++) {
+            some = some || x[factor->order[i]] != 0.0;
+            y[i] = 0.0;
+        }
+        if (some) {
+            solve_group(factor, group, x, y);
+        }
+    }
+    for (int64_t g = factor->block[b + 1] - 1; g >= factor->block[b] && some; g--) {
+        solve_group_back(factor, &factor->groups[g], y);
     }
 }
 
@@ -244,7 +389,7 @@ void envelope_solve(const struct envelope *factor, double *x)
     double *y = factor->scratch;
 #pragma omp parallel for schedule(static, 1) num_threads(threads_for(factor))
     for (int64_t b = 0; b < factor->block_count; b++) {
-        solve_rows(factor, factor->block[b], factor->block[b + 1], x, y);
+        solve_block(factor, b, x, y);
     }
     for (int64_t i = 0; i < factor->n; i++) {
         x[factor->order[i]] = y[i];

@@ -8,16 +8,25 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+/* Consecutive rows, whose entries lie side by side, column by column: zeros above the diagonal. */
+enum { ENVELOPE_GROUP = 8 };
+struct envelope_group {
+    int64_t row, count; /* at most ENVELOPE_GROUP; fewer at the end of a block only */
+    int64_t first;      /* its first column within the envelope, the first row of a group */
+    int64_t start;      /* of column `first` in value[] */
+};
+
 struct envelope {
     int64_t n;
-    int64_t *order;  /* order[i]: the caller's row at place i */
-    int64_t *first;  /* first column of row i within the envelope */
-    int64_t *start;  /* n + 1: row i is value[start[i] .. start[i+1]), columns first[i] .. i */
-    double *value;   /* the factor L */
-    double *scratch; /* n */
-    int64_t dropped; /* linearly dependent rows: their diagonal entry of L is infinite */
-    int64_t *block;  /* block_count + 1: first row of each diagonal block; rows of different blocks are not
-                        coupled */
+    int64_t *order, *place; /* order[i]: the caller's row at place i; place[order[i]] = i */
+    int64_t *at;            /* of each of the caller's rows: where column 0 would be in value[] */
+    int64_t group_count, size;
+    struct envelope_group *groups; /* group_count */
+    double *value;                 /* size: the factor L */
+    double *scratch;               /* n */
+    int64_t dropped;               /* linearly dependent rows: their diagonal entry of L is infinite */
+    int64_t *block; /* block_count + 1: first group of each diagonal block; rows of different blocks are not
+                       coupled */
     int64_t block_count;
 };
 
@@ -28,6 +37,31 @@ struct envelope {
 MUST_CHECK enum status envelope_factorise(int64_t n, const int64_t *ptr, const int64_t *column,
                                           const double *value, double least, double shift,
                                           struct envelope *factor, struct error *error);
+
+/* The same step by step, for a matrix that is factored again and again. Order n * width rows, whose entries
+ * are between all of the `width` rows of r and of column[], and set all but value[], which the caller
+ * allocates. */
+MUST_CHECK enum status envelope_begin(int64_t n, const int64_t *ptr, const int64_t *column, int64_t width,
+                                      struct envelope *factor, struct error *error);
+
+/* Whether an entry is in the lower triangle of the reordered matrix. */
+static inline bool envelope_has(const struct envelope *factor, int64_t row, int64_t column)
+{
+    return factor->place[column] <= factor->place[row];
+}
+
+/* matrix[size] += an entry of A, if it is there. */
+static inline void envelope_add(const struct envelope *factor, int64_t row, int64_t column, double value,
+                                double *matrix)
+{
+    if (envelope_has(factor, row, column)) {
+        matrix[factor->at[row] + factor->place[column] * ENVELOPE_GROUP] += value;
+    }
+}
+
+/* value[], which is A, becomes L. */
+void envelope_factor(struct envelope *factor, double least, double shift);
+
 void envelope_free(struct envelope *factor);
 
 /* Whether the row at place i, order[i] of the caller, was dropped. */

@@ -93,6 +93,10 @@ enum status preconditioner_build(struct solid_system *system, bool coarse, struc
     RETURN_IF_ERROR(NEW_ARRAY(&p->stiffness, system->node_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&p->vector, system->node_count * system->dim, error));
     RETURN_IF_ERROR(NEW_ARRAY(&p->force, system->node_count * system->dim, error));
+    if (coarse && system_has_inverse(system)) {
+        RETURN_IF_ERROR(stiffness_factor_begin(system, &p->elements, error));
+    }
+    coarse = coarse && p->elements.body == NULL;
     RETURN_IF_ERROR(coarse_space_build(system->dim, system->node_count, system->X, system->node_lists,
                                        coarse ? centre_count(system) : 0, &p->coarse, error));
     p->size = p->coarse.count * p->dim;
@@ -121,6 +125,7 @@ void preconditioner_free(struct preconditioner *p)
     constraint_free(&p->constraint);
     coarse_space_free(&p->coarse);
     inverse_factor_free(&p->factor);
+    stiffness_factor_free(&p->elements);
     sparse_free(&p->opposite);
     sparse_free(&p->conditions);
     sparse_free(&p->of_field);
@@ -144,6 +149,10 @@ static void divide_by_mass(const struct preconditioner *p, const double *x, doub
 /* y = B x; not the same array */
 static void smooth(struct preconditioner *p, const double *x, double *y)
 {
+    if (p->elements.definite) {
+        stiffness_factor_solve(&p->elements, x, y);
+        return;
+    }
     if (p->factor.node_count == 0) {
         divide_by_mass(p, x, y);
         return;
@@ -200,6 +209,7 @@ enum status preconditioner_state(struct preconditioner *p, const struct state *s
         {"mass", STATE_NUMBERS, p->mass, p->node_count},
         {"stiffness", STATE_NUMBERS, p->stiffness, p->node_count},
         {"body", STATE_NUMBERS, p->body, p->size * p->size},
+        {"elements", STATE_NUMBERS, p->elements.body, p->elements.factor.size},
         {"active", STATE_FLAGS, p->active, p->contact_node_count},
         {"normal", STATE_NUMBERS, p->normal, p->contact_node_count * p->dim},
     };

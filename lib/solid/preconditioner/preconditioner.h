@@ -11,13 +11,14 @@
  * G^T)^-1 G f with the rows G. With smoothed cells B = L^T D^-1 L, with the factor L of inverse_stiffness.h
  * and D by how much the stiffness around each node has changed since rest; otherwise B = D^-1. For linear
  * systems this is a two-level additive preconditioner with deflated constraints. Any positive definite A is
- * admissible.
+ * admissible. Plane bodies without contacts have the inverse of stiffness_factor.h alone, up to some size.
  */
 #pragma once
 
 #include "base/state.h"
 #include "solid/preconditioner/coarse_space.h"
 #include "solid/preconditioner/inverse_stiffness.h"
+#include "solid/preconditioner/stiffness_factor.h"
 #include "solid/system/system.h"
 
 /* Means of the coarse fields, which are not zero for a few centres. */
@@ -31,14 +32,15 @@ struct coarse_mean {
 struct preconditioner {
     int dim;
     int64_t node_count;
-    double *stiffness;            /* node_count: that D was set from, N/m (2D: N/m2), */
-    double *at_rest;              /* and with an inverse factor what it is at rest */
-    double *mass;                 /* node_count: D, N/m (2D: N/m2); with an inverse factor a number */
-    struct inverse_factor factor; /* node_count 0: none */
-    double *vector, *force;       /* node_count * dim: scratch */
-    struct constraint constraint; /* P */
-    struct coarse_space coarse;   /* count 0: none, M = B^-1 */
-    int64_t size;                 /* coarse.count * dim: rows and columns of the coarse matrices */
+    double *stiffness;                /* node_count: that D was set from, N/m (2D: N/m2), */
+    double *at_rest;                  /* and with an inverse factor what it is at rest */
+    double *mass;                     /* node_count: D, N/m (2D: N/m2); with an inverse factor a number */
+    struct inverse_factor factor;     /* node_count 0: none */
+    struct stiffness_factor elements; /* in place of both, or none */
+    double *vector, *force;           /* node_count * dim: scratch */
+    struct constraint constraint;     /* P */
+    struct coarse_space coarse;       /* count 0: none, M = B^-1 */
+    int64_t size;                     /* coarse.count * dim: rows and columns of the coarse matrices */
     double *body; /* stiffness of body and constraint penalties along the coarse fields, P Z e_k, N/m (2D:
                      N/m2) */
     bool has_rigid_mode; /* the conditions leave the body free to move as a whole */

@@ -41,6 +41,6 @@ void preconditioner_restore(struct preconditioner *p, const struct solid_system 
 {
     if (p->size > 0) {
         weigh_coarse_space(p);
-        preconditioner_factorise_both(p, system);
     }
+    preconditioner_factorise_both(p, system);
 }

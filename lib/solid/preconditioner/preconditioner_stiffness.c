@@ -51,6 +51,13 @@ double preconditioner_factorise(const struct preconditioner *p, double *matrix)
 
 void preconditioner_factorise_both(struct preconditioner *p, const struct solid_system *system)
 {
+    if (p->elements.body != NULL) {
+        stiffness_factor_make(&p->elements, p->dim, p->stiffness);
+        return;
+    }
+    if (p->size == 0) {
+        return;
+    }
     if (p->contacts != NULL) {
         memset(p->contacts, 0, (size_t)(p->size * p->size) * sizeof *p->contacts);
         preconditioner_add_contacts(p, system, p->contacts);
@@ -97,13 +104,16 @@ static enum status measure_by_differences(struct preconditioner *p, struct solid
 enum status preconditioner_measure(struct preconditioner *p, struct solid_system *system, const double *u,
                                    int64_t *evaluations, struct error *error)
 {
-    if (p->size == 0) {
+    if (p->size == 0 && p->elements.body == NULL) {
         return STATUS_OK;
     }
     NEW_SCRATCH(double, at_u, p->node_count * p->dim, error);
     system_resist(system, u, at_u);
     ++*evaluations;
-    if (system->body.smoothed) {
+    if (p->elements.body != NULL) {
+        body_share_collect(&system->body);
+        RETURN_IF_ERROR(stiffness_factor_take(system, p->stiffness, &p->elements, error));
+    } else if (system->body.smoothed) {
         RETURN_IF_ERROR(preconditioner_assemble(p, system, error));
     } else {
         RETURN_IF_ERROR(measure_by_differences(p, system, u, at_u, error));
