@@ -69,8 +69,8 @@ static void add_word(struct inp *p, struct inp_set *set, char kind, const char *
                      const char *label)
 {
     size_t prefix = strlen(p->instance) + 1;
-    int64_t one, count = 1;
-    const int64_t *member = &one;
+    int64_t one[1], count = 1;
+    const int64_t *member = one;
     bool numbered = prefix > 1 && (size_t)length > prefix && word[prefix - 1] == '.' &&
                     is_number(word + prefix, length - (int64_t)prefix) &&
                     strncasecmp(word, p->instance, prefix - 1) == 0;
@@ -80,11 +80,11 @@ static void add_word(struct inp *p, struct inp_set *set, char kind, const char *
     }
     if (is_number(word, length)) {
         int64_t tag = input_whole(p->r, "member", word, length, 1, MSH_LARGEST_TAG);
-        one = msh_index_find(kind == 'N' ? &p->r->nodes : &p->r->elements, tag);
+        one[0] = msh_index_find(kind == 'N' ? &p->r->nodes : &p->r->elements, tag);
         if (p->is_apart && !numbered) {
             return;
         }
-        if (one < 0) {
+        if (one[0] < 0) {
             msh_fail(p->r, "there is no %s %lld as yet", kind == 'N' ? "node" : "element", (long long)tag);
         }
     } else {
