@@ -90,14 +90,14 @@ $(INCISION)/advances/u5.dat: $(addprefix examples/liver/,cut.sh cut.scene labels
 	@mkdir -p $(@D)
 	examples/liver/cut.sh $(@D)
 
-# A liver, cut from above, whose faces are drawn apart.
+# A liver of 10 000 nodes, cut from above, whose faces are drawn apart.
 $(INCISION)/retract.mts: $(addprefix examples/liver/,labels.nii.gz labels.tsv) $(INCISION_PROGRAMS) $(BUILD)/bin/voxels
 	@mkdir -p $(@D)
 	printf '%s\n' '-45 -200 110 -45 200 110 -45 200 300' '-45 -200 110 -45 200 300 -45 -200 300' > $(@D)/retract.tsv
-	voxels -h 12mm -l examples/liver/labels.tsv examples/liver/labels.nii.gz | \
+	voxels -h 7.4mm -l examples/liver/labels.tsv examples/liver/labels.nii.gz | \
 	    tag -u mm -d 'liver|outside' -f 'held=ball:30,-50,140,60 and normal:0,-1,0,50 without liver|kidney' | \
 	    incise -v -s $(@D)/retract.tsv -u mm -n knife | \
-	    tag -u mm -f 'left=knife|back and ball:-45,85,140,25' -f 'right=knife|front and ball:-45,85,140,25' | shapefn -o $@
+	    tag -u mm -f 'left=knife|back and half:0,0,130,0,0,1' -f 'right=knife|front and half:0,0,130,0,0,1' | shapefn -o $@
 $(INCISION)/retract.dat: $(INCISION)/retract.mts examples/liver/retract.scene
 	mtled -v -o $@ examples/liver/retract.scene $<
 
