@@ -43,33 +43,29 @@ static bool on_one_side(const struct assembly *input, int32_t a, int32_t b)
 }
 
 /* side[cells]: the parts into which jumps of the modulus within a region divide the sides of the input.
- * `*divided`: whether there are such. Cells on both sides of a jump that hang together around it stay on one
+ * Returns whether there are such. Cells on both sides of a jump that hang together around it stay on one
  * side. */
-static enum status divide(const struct assembly *input, const struct faces *faces, const int32_t *region,
-                          const struct moduli *of, int32_t *side, bool *divided, struct error *error)
+static bool divide(const struct assembly *input, const struct faces *faces, const int32_t *region,
+                   const struct moduli *of, int32_t *side)
 {
-    int64_t cells = input->cells.count, count = 0;
-    NEW_SCRATCH(int32_t, first, cells, error);
-    *divided = false;
+    int64_t cells = input->cells.count;
+    bool divided = false;
     for (int64_t c = 0; c < cells; c++) {
-        first[c] = (int32_t)c;
+        side[c] = (int32_t)c;
     }
     for (int64_t f = 0; f < faces->count; f++) {
         int32_t a = faces->cell[2 * f], b = faces->cell[2 * f + 1];
         if (b >= 0 && on_one_side(input, a, b) &&
             !(region[a] == region[b] && jump_between(&of[a], &of[b]) > least_jump)) {
-            set_join(first, a, b);
+            set_join(side, a, b);
         }
     }
-    for (int64_t c = 0; c < cells; c++) {
-        int32_t head = set_first(first, (int32_t)c);
-        side[c] = head == c ? (int32_t)count++ : side[head];
-    }
+    (void)set_number(cells, side);
     for (int64_t f = 0; f < faces->count; f++) {
         int32_t a = faces->cell[2 * f], b = faces->cell[2 * f + 1];
-        *divided = *divided || (b >= 0 && on_one_side(input, a, b) && side[a] != side[b]);
+        divided = divided || (b >= 0 && on_one_side(input, a, b) && side[a] != side[b]);
     }
-    return STATUS_OK;
+    return divided;
 }
 
 /* What there is at the faces between cells. */
@@ -177,7 +173,7 @@ enum status model_interfaces(struct model *model, struct stream *stream, bool *r
     const int32_t *side = input->cell_side;
     bool distance = recorded.support.visibility == VISIBILITY_DISTANCE;
     if (!distance) {
-        RETURN_IF_ERROR(divide(input, faces, regions.of_cell, of, divided_side, &divided, error));
+        divided = divide(input, faces, regions.of_cell, of, divided_side);
         side = divided ? divided_side : side;
     }
     struct found found = search(faces, side, of);

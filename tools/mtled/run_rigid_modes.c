@@ -13,24 +13,12 @@
 /* The bodies of a model: parts that are connected by cells. */
 struct bodies {
     int32_t count;
-    int32_t *of_node;          /* node_count */
+    int32_t *of_node;          /* node_count; nodes without cell are bodies of their own */
     int64_t *cell;             /* count: one of its cells, whose region is named in messages */
     bool *touches;             /* count: a contact acts on it, with a rigid surface or a constrained body */
     bool *stays;               /* count: it is constrained in some direction, or touches */
     struct rigid_modes *modes; /* count */
 };
-
-/* Number the bodies: of_node[n]. Nodes without cell are bodies of their own. */
-static void join_cells(const struct cells *cells, struct bodies *bodies)
-{
-    int32_t *first = bodies->of_node;
-    set_join_cells(cells->node_count, cells->count, cells->dim + 1, cells->node, first);
-    for (int64_t n = 0; n < cells->node_count; n++) {
-        /* The first node of a body comes before the others, so it already has a number. */
-        int32_t of = first[n];
-        first[n] = of == n ? bodies->count++ : first[of];
-    }
-}
 
 /* Mark the bodies of the nodes of `at`. */
 static void mark_bodies(const struct bodies *bodies, const struct boundary_averages *at, bool *marked)
@@ -91,7 +79,8 @@ static enum status bodies_find(const struct model *model, struct bodies *bodies,
     const struct solid_system *system = &model->system;
     *bodies = (struct bodies){0};
     RETURN_IF_ERROR(NEW_ARRAY(&bodies->of_node, cells->node_count, error));
-    join_cells(cells, bodies);
+    set_join_cells(cells->node_count, cells->count, cells->dim + 1, cells->node, bodies->of_node);
+    bodies->count = set_number(cells->node_count, bodies->of_node);
     RETURN_IF_ERROR(NEW_ARRAY(&bodies->cell, bodies->count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&bodies->touches, bodies->count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&bodies->modes, bodies->count, error));

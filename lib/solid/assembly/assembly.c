@@ -117,12 +117,9 @@ void assembly_complete(struct assembly *input)
 /* Whether the conditions leave a body, of cells that are connected, free to move as a whole. */
 static enum status find_floating(const struct cells *cells, struct solid_system *system, struct error *error)
 {
-    int32_t count = 0;
     NEW_SCRATCH(int32_t, body, cells->node_count, error);
     set_join_cells(cells->node_count, cells->count, cells->dim + 1, cells->node, body);
-    for (int64_t n = 0; n < cells->node_count; n++) { /* the first node of a body comes before the others */
-        body[n] = body[n] == n ? count++ : body[body[n]];
-    }
+    int32_t count = set_number(cells->node_count, body);
     NEW_SCRATCH(struct rigid_modes, modes, count, error);
     RETURN_IF_ERROR(system_rigid_modes(system, count, body, modes, error));
     for (int64_t c = 0; c < cells->count; c++) {

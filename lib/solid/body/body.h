@@ -168,9 +168,9 @@ double body_volume(const struct body *body);
  * what they have dissipated up to the last accepted state. */
 double body_energy(struct body *body, const double *u);
 
-/* by_factor[count] += the derivatives of the energy by the load factors of the active stresses, J (2D: J/m),
- * at the deformation evaluated last. */
-void body_active_energy(struct body *body, int64_t count, double *by_factor);
+/* The derivative of the energy by the load factor of active stresses, J (2D: J/m), at the deformation
+ * evaluated last. */
+double body_active_energy(struct body *body, int32_t curve);
 
 /* Viscoelastic materials: a step of dt from the last accepted state begins, 0: a jump; evaluations are then
  * at its end. And the state evaluated last is accepted. Other bodies have no use for either. */

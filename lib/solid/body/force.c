@@ -290,7 +290,7 @@ static void add_active_energy(const struct body *body, int64_t q, const double F
     }
 }
 
-static double active_energy_of(struct body *body, int32_t curve)
+double body_active_energy(struct body *body, int32_t curve)
 {
     double energy = 0.0;
 #pragma omp parallel for schedule(static) num_threads(body->threads)
@@ -304,17 +304,4 @@ static double active_energy_of(struct body *body, int32_t curve)
         energy += body->blocks[b].energy;
     }
     return energy;
-}
-
-void body_active_energy(struct body *body, int64_t count, double *by_factor)
-{
-    for (int32_t curve = 0; curve < count; curve++) {
-        bool acts = false;
-        for (int64_t m = 0; m < body->material_count && !acts; m++) {
-            acts = body->materials[m].active > 0.0 && body->materials[m].active_curve == curve;
-        }
-        if (acts) {
-            by_factor[curve] += active_energy_of(body, curve);
-        }
-    }
 }

@@ -82,8 +82,8 @@ static bool evaluate(struct dynamics *d)
         memset(d->loads, 0, (size_t)d->size * sizeof *d->loads);
         system_add_loads(system, d->u, d->loads);
     }
-    if (d->stored != NULL) {
-        energy_of_prestress(system, d->u, d->stored);
+    for (int32_t c = 0; d->stored != NULL && c < system->curve_count; c++) {
+        d->stored[c] = d->prestressed[c] ? energy_of_prestress(system, d->u, c) : 0.0;
     }
     return deformation.least_jacobian > 0.0;
 }

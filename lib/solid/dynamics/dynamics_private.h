@@ -13,7 +13,8 @@ struct dynamics {
     double *before, *after; /* velocities half a step before and after this one */
     double *residual, *mode, *scratch;
     double *loads;       /* NULL without loads */
-    double *stored;      /* of each curve: energy_of_prestress at u; NULL without */
+    bool *prestressed;   /* of each curve: energy_find_prestress; */
+    double *stored;      /* and energy_of_prestress at u; NULL without */
     double *mass;        /* node_count: the lumped one, with half a step of the dashpots of supports: see
                             dynamics_weigh_dashpots; without dashpots that of the system */
     double *drag;        /* force of the dashpots in this step, against the motion; NULL: none */

@@ -19,7 +19,8 @@ enum status dynamics_allocate(struct dynamics *d, struct error *error)
     if (system->load_count + system->pressure_count > 0) {
         RETURN_IF_ERROR(NEW_ARRAY(&d->loads, d->size, error));
     }
-    if (energy_has_prestress(system)) {
+    RETURN_IF_ERROR(NEW_ARRAY(&d->prestressed, system->curve_count, error));
+    if (energy_find_prestress(system, d->prestressed)) {
         RETURN_IF_ERROR(NEW_ARRAY(&d->stored, system->curve_count, error));
     }
     d->mass = system->lumped_mass;
@@ -36,8 +37,8 @@ enum status dynamics_allocate(struct dynamics *d, struct error *error)
 
 void dynamics_release(struct dynamics *d)
 {
-    FREE_ALL(d->u, d->next, d->before, d->after, d->residual, d->mode, d->scratch, d->loads, d->stored,
-             d->drag, d->factor_before, d->factor_now, d->factor_after, d->factor_change);
+    FREE_ALL(d->u, d->next, d->before, d->after, d->residual, d->mode, d->scratch, d->loads, d->prestressed,
+             d->stored, d->drag, d->factor_before, d->factor_now, d->factor_after, d->factor_change);
     if (d->mass != d->system->lumped_mass) {
         free(d->mass);
     }

@@ -5,7 +5,6 @@
 #include "base/vector.h"
 
 #include <math.h>
-#include <string.h>
 #include <stdlib.h>
 
 enum status energy_log_add(struct energy_log *log, const struct energy *row, struct error *error)
@@ -75,29 +74,34 @@ double energy_internal(struct solid_system *system, const double *u)
            system_pull_membranes(system, u, NULL);
 }
 
-bool energy_has_prestress(const struct solid_system *system)
+bool energy_find_prestress(const struct solid_system *system, bool *acts)
 {
-    bool has = false;
-    for (int64_t m = 0; m < system->body.material_count; m++) {
-        has = has || system->body.materials[m].active > 0.0;
-    }
-    for (int64_t i = 0; i < system->membrane_count; i++) {
-        has = has || system->membranes[i].tension > 0.0;
-    }
-    return has;
-}
-
-void energy_of_prestress(struct solid_system *system, const double *u, double *by_factor)
-{
-    memset(by_factor, 0, (size_t)system->curve_count * sizeof *by_factor);
-    body_active_energy(&system->body, system->curve_count, by_factor);
-    for (int64_t i = 0; i < system->membrane_count; i++) {
-        const struct membrane *membrane = &system->membranes[i];
-        if (membrane->tension > 0.0) {
-            by_factor[membrane->curve] += membrane_pull(membrane, system->X, 1.0, u, NULL) -
-                                          membrane_pull(membrane, system->X, 0.0, u, NULL);
+    const struct body *body = &system->body;
+    bool any = false;
+    for (int64_t m = 0; m < body->material_count; m++) {
+        if (body->materials[m].active > 0.0) {
+            any = acts[body->materials[m].active_curve] = true;
         }
     }
+    for (int64_t i = 0; i < system->membrane_count; i++) {
+        if (system->membranes[i].tension > 0.0) {
+            any = acts[system->membranes[i].curve] = true;
+        }
+    }
+    return any;
+}
+
+double energy_of_prestress(struct solid_system *system, const double *u, int32_t curve)
+{
+    double energy = body_active_energy(&system->body, curve);
+    for (int64_t i = 0; i < system->membrane_count; i++) {
+        const struct membrane *membrane = &system->membranes[i];
+        if (membrane->tension > 0.0 && membrane->curve == curve) {
+            energy += membrane_pull(membrane, system->X, 1.0, u, NULL) -
+                      membrane_pull(membrane, system->X, 0.0, u, NULL);
+        }
+    }
+    return energy;
 }
 
 double energy_contact(const struct solid_system *system)

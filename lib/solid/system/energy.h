@@ -48,10 +48,12 @@ double energy_kinetic(const struct solid_system *system, const double *v, const 
 /* Energy of the body and its membranes at u, and of the constraint penalties at system->factor. */
 double energy_internal(struct solid_system *system, const double *u);
 
-/* Whether active stresses or prestresses of membranes act; and by_factor[curve_count] = the derivatives of
- * energy_internal by the load factors that these are multiplied by, J (2D: J/m), at u, evaluated last. */
-bool energy_has_prestress(const struct solid_system *system);
-void energy_of_prestress(struct solid_system *system, const double *u, double *by_factor);
+/* acts[curve_count]: whether an active stress or the prestress of a membrane is multiplied by a load factor;
+ * returns whether any is. */
+bool energy_find_prestress(const struct solid_system *system, bool *acts);
+
+/* The derivative of energy_internal by such a factor, J (2D: J/m), at u, which was evaluated last. */
+double energy_of_prestress(struct solid_system *system, const double *u, int32_t curve);
 
 /* contact_energy of all contacts. */
 double energy_contact(const struct solid_system *system);
