@@ -140,6 +140,17 @@ static void multiply(const struct stiffness_factor *elements, const double *x, d
     }
 }
 
+/* field[size] = the coarse field k, without what the conditions hold. one[p->size]: zeros. */
+static void take_coarse_field(struct strained *s, int64_t k, double *one, double *field)
+{
+    struct preconditioner *p = &s->preconditioner;
+    one[k] = 1.0;
+    memset(field, 0, (size_t)s->size * sizeof *field);
+    coarse_space_prolongate(&p->coarse, one, field);
+    preconditioner_project(p, field);
+    one[k] = 0.0;
+}
+
 /* The same matrix along the fields of a coarse space, as in three dimensions. */
 static void restrict_elements(struct strained *s)
 {
@@ -151,11 +162,7 @@ static void restrict_elements(struct strained *s)
     GOOD(NEW_ARRAY(&p->body, p->size * p->size, &error));
     double *one = zeros(p->size, sizeof *one), *field = lattice_vector(&s->l), *force = lattice_vector(&s->l);
     for (int64_t k = 0; k < p->size; k++) {
-        one[k] = 1.0;
-        memset(field, 0, (size_t)s->size * sizeof *field);
-        coarse_space_prolongate(&p->coarse, one, field);
-        preconditioner_project(p, field);
-        one[k] = 0.0;
+        take_coarse_field(s, k, one, field);
         multiply(&p->elements, field, force);
         preconditioner_project(p, force);
         coarse_space_restrict(&p->coarse, force, p->body + k * p->size);
@@ -173,11 +180,7 @@ static double *stiffness_by_differences(struct strained *s)
         force[way] = lattice_vector(&s->l);
     }
     for (int64_t k = 0; k < p->size; k++) {
-        one[k] = 1.0;
-        memset(field, 0, (size_t)s->size * sizeof *field);
-        coarse_space_prolongate(&p->coarse, one, field);
-        preconditioner_project(p, field);
-        one[k] = 0.0;
+        take_coarse_field(s, k, one, field);
         for (int way = 0; way < 2; way++) {
             for (int64_t i = 0; i < s->size; i++) {
                 moved[i] = s->u[i] + (way == 0 ? epsilon : -epsilon) * field[i];

@@ -28,10 +28,10 @@ static void mark_slits(const struct mesh_draft *draft, bool *slit)
 {
     const struct msh *msh = draft->msh;
     for (int64_t e = 0; e < msh->element_count; e++) {
-        bool is_named = msh->elements[e].group >= 0;
+        bool is_named = msh->elements[e].group >= 0 && mesh_element_dim(draft, e) == draft->mesh->dim - 1;
         for (int k = 0; is_named && k < mesh_corners(draft, e); k++) {
             int32_t node = draft->node_of[msh->node_idx[msh->elements[e].first + k]];
-            if (node >= 0 && mesh_element_dim(draft, e) == draft->mesh->dim - 1) {
+            if (node >= 0) {
                 slit[node] = true;
             }
         }

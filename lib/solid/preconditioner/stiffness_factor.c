@@ -21,6 +21,7 @@ struct couples {
     struct sparse lists, by_node; /* value[]: unused */
     int64_t room;
 };
+
 static void couples_free(struct couples *couples)
 {
     sparse_free(&couples->lists);
@@ -46,6 +47,15 @@ static enum status add_rows(const struct constraint_rows *rows, struct couples *
     return STATUS_OK;
 }
 
+/* The row of node n of the body's order, with the caller's indices of its nodes. */
+static void make_row(const struct body *body, int32_t n, struct block_row *row)
+{
+    block_row_make(body, n, row);
+    for (int64_t k = 0; k < row->count; k++) {
+        row->node[k] = (int32_t)body->node_order[row->node[k]];
+    }
+}
+
 /* Of the elements around each node, of conditions and penalties. */
 static enum status list_couples(const struct solid_system *system, struct couples *couples,
                                 struct error *error)
@@ -57,10 +67,7 @@ static enum status list_couples(const struct solid_system *system, struct couple
     RETURN_IF_ERROR(NEW_ARRAY(&couples->lists.ptr, lists + 1, error));
     RETURN_IF_ERROR(block_row_begin(body, block_row_most(body), &row, error));
     for (int32_t p = 0; p < system->node_count; p++) {
-        block_row_make(body, p, &row);
-        for (int64_t k = 0; k < row.count; k++) {
-            row.node[k] = (int32_t)body->node_order[row.node[k]];
-        }
+        make_row(body, p, &row);
         RETURN_IF_ERROR(add_list(row.count, row.node, couples, error));
     }
     RETURN_IF_ERROR(add_rows(&system->rows, couples, error));
@@ -139,10 +146,7 @@ static void add_elements(const struct body *body, int32_t n, struct block_row *r
 {
     int dim = body->dim, values = (dim + 1) * dim;
     double block[9];
-    block_row_make(body, n, row);
-    for (int64_t k = 0; k < row->count; k++) {
-        row->node[k] = (int32_t)body->node_order[row->node[k]];
-    }
+    make_row(body, n, row);
     for (int64_t k = 0; k < row->count; k++) {
         const double *left = row->block + k * values;
         add_block(envelope, dim, body->node_order[n], row->node[k], left, matrix);
