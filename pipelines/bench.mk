@@ -23,6 +23,8 @@ $(BENCH_KERNELS:%=$(BUILD)/bench/bench-%): $(BUILD)/bench/bench-%: $(BUILD)/pipe
 	@mkdir -p $(@D)
 	$(CC) $(LDFLAGS) -o $@ $^ $(LDLIBS)
 
+tested: $(BENCH_KERNELS:%=$(BUILD)/bench/bench-%)
+
 # One after the other: they would disturb each other.
 $(BENCH)/bench.tsv: $(BENCH_KERNELS:%=$(BUILD)/bench/bench-%) pipelines/bench.mk
 	@mkdir -p $(@D)

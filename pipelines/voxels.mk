@@ -30,6 +30,9 @@ voxels: $(VOXELS_OUT)/voxels.tsv $(VOXELS_OUT)/meshes.tsv
 $(VOXELS_FILLED): $(VOXELS_FILLED).o $(LIBRARY)
 	$(CC) $(LDFLAGS) -o $@ $^ $(LDLIBS)
 
+# make check builds what only a study runs.
+tested: $(VOXELS_FILLED)
+
 $(VOXELS_OUT)/%: export PATH := $(abspath $(BUILD))/bin:$(PATH)
 
 $(VOXELS_OUT)/colin27.nii.gz: examples/neurosurgery/colin27_labels.nii.gz

@@ -8,7 +8,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <unistd.h>
 
 enum { MARGIN = 4 };
 
@@ -137,7 +136,7 @@ int main(int argc, char *argv[])
         table_free(&surface);
     }
     if (status == STATUS_OK) {
-        status = image_write(&image, STDOUT_FILENO, IMAGE_NIFTI_GZIP, NULL, &error);
+        status = image_write(&image, stdout, IMAGE_NIFTI_GZIP, NULL, &error);
     }
     if (status != STATUS_OK) {
         fprintf(stderr, "filled: %s\n", error.text);
