@@ -14,6 +14,8 @@ static const double round_off = 1e-6;
 /* The penalty of a point times its width, beside 2 p^2 / mu with the multiplier p there, by the largest
  * multiplier: its least value, and its value after stiffening. */
 static const double least_modulus = 10.0, most_modulus = 15.0;
+/* By the shear modulus: beyond, no surface bears the multiplier; it grows where no pressure closes a gap. */
+static const double most_pressure = 1000.0;
 enum { POINTS_FOR_THREAD = 1000 }; /* see chunks_of */
 
 /* A quadrature point has an equal share of the area of its facet. */
@@ -132,8 +134,9 @@ bool contact_stiffen(struct contact *contact, double shear)
     for (int64_t p = 0; p < contact->count; p++) {
         largest = fmax(largest, vector_length(contact->dim, contact->held + p * contact->dim));
     }
+    largest = fmin(largest, most_pressure * shear);
     for (int64_t p = 0; p < contact->count && contact->modulus > 0.0; p++) {
-        double held = vector_length(contact->dim, contact->held + p * contact->dim);
+        double held = fmin(vector_length(contact->dim, contact->held + p * contact->dim), largest);
         double least = (least_modulus * largest + 2.0 * held * held / shear) / contact_width(contact, p);
         if (contact->stiffness[p] < least) {
             contact->stiffness[p] = most_modulus / least_modulus * least;

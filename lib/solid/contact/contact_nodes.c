@@ -7,6 +7,19 @@
 #include <math.h>
 #include <string.h>
 
+/* Of the Gauss-Seidel iteration for (20): sweeps, and the change in the last one by the largest. */
+enum { MOST_SWEEPS = 20 };
+static const double sweeps_left = 0.01;
+
+/* The hat function of contact node a at its sample s; without averages the points are the nodes. */
+static double hat(const struct contact *contact, int64_t a, int64_t s)
+{
+    const struct boundary_averages *averages = contact->averages;
+    return averages == NULL ? 1.0
+                            : averages->sample_share[s] * averages->area[a] /
+                                  contact->points->area[averages->sample_point[s]];
+}
+
 void contact_spread_multipliers(struct contact *contact)
 {
     const struct boundary_averages *averages = contact->averages;
@@ -20,8 +33,7 @@ void contact_spread_multipliers(struct contact *contact)
         const double *multiplier = contact->multiplier + a * contact->dim;
         for (int64_t s = averages->sample_ptr[a]; s < averages->sample_ptr[a + 1]; s++) {
             int64_t p = averages->sample_point[s];
-            double weight = averages->sample_share[s] * averages->area[a] / contact->points->area[p];
-            add_scaled(contact->dim, weight, multiplier, contact->held + p * contact->dim);
+            add_scaled(contact->dim, hat(contact, a, s), multiplier, contact->held + p * contact->dim);
         }
     }
 }
@@ -110,12 +122,48 @@ static double augmented(const struct contact *contact, int64_t a, double next[3]
     return compliance;
 }
 
+/* Change multiplier a so that (20) holds for it, with the others as they are. Returns the length of the
+ * change, Pa. */
+static double augment_node(struct contact *contact, int64_t a)
+{
+    const struct boundary_averages *averages = contact->averages;
+    double *multiplier = contact->multiplier + a * contact->dim;
+    double sum[3] = {0.0, 0.0, 0.0}, direction[3] = {0.0, 0.0, 0.0}, change[3], along = 0.0, square = 0.0;
+    int64_t begin = averages != NULL ? averages->sample_ptr[a] : a;
+    int64_t end = averages != NULL ? averages->sample_ptr[a + 1] : a + 1;
+    for (int64_t s = begin; s < end; s++) {
+        int64_t p = averages != NULL ? averages->sample_point[s] : s;
+        if (!contact_between_led(contact, p)) {
+            double weight = hat(contact, a, s),
+                   part = weight * contact->points->area[p] / contact->stiffness[p];
+            add_difference(contact, p, part, sum, direction);
+            square += weight * part;
+        }
+    }
+    for (int c = 0; c < contact->dim && square > 0.0; c++) {
+        change[c] = sum[c] / square;
+        along += (multiplier[c] + change[c]) * direction[c];
+    }
+    for (int c = 0; c < contact->dim && square > 0.0; c++) {
+        change[c] = along > 0.0 ? change[c] : -multiplier[c];
+        multiplier[c] += change[c];
+    }
+    for (int64_t s = begin; s < end && square > 0.0; s++) {
+        int64_t p = averages != NULL ? averages->sample_point[s] : s;
+        add_scaled(contact->dim, hat(contact, a, s), change, contact->held + p * contact->dim);
+    }
+    return square > 0.0 ? vector_length(contact->dim, change) : 0.0;
+}
+
 void contact_augment(struct contact *contact)
 {
-    for (int64_t a = 0; a < contact_nodes(contact)->count; a++) {
-        double next[3];
-        (void)augmented(contact, a, next);
-        memcpy(contact->multiplier + a * contact->dim, next, (size_t)contact->dim * sizeof *next);
+    double first = 0.0, change = INFINITY;
+    for (int sweep = 0; sweep < MOST_SWEEPS && change > sweeps_left * first; sweep++) {
+        change = 0.0;
+        for (int64_t a = 0; a < contact_nodes(contact)->count; a++) {
+            change = fmax(change, augment_node(contact, a));
+        }
+        first = fmax(first, change);
     }
     contact_spread_multipliers(contact);
 }

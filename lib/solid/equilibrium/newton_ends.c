@@ -25,6 +25,12 @@ static double most_lack(const struct newton *n)
     return fmin(NODAL_PRESSURE_LACK, 10.0 * n->options->tolerance);
 }
 
+bool newton_augments(struct newton *n)
+{
+    return n->system->contact_count > 0 && n->corrections < NEWTON_MOST_AUGMENTATIONS &&
+           (n->corrections <= 1 || system_contact_miss(n->system) > n->options->tolerance * n->report->move);
+}
+
 void newton_augment(struct newton *n)
 {
     if (n->uphill > 0) {
@@ -32,8 +38,7 @@ void newton_augment(struct newton *n)
     }
     bool near = n->corrections > 0 && n->length < most_length * n->report->move;
     bool pressures = near && body_is_limited(&n->system->body);
-    bool contacts = n->system->contact_count > 0 && n->corrections < NEWTON_MOST_AUGMENTATIONS &&
-                    (n->corrections <= 1 || contacts_lack(n));
+    bool contacts = newton_augments(n);
     if (pressures) {
         n->pressures_lack =
             body_augment(&n->system->body, n->corrections > 1, most_lack(n), n->report->move / n->body_size);
@@ -57,7 +62,7 @@ void newton_estimate(struct newton *n)
     double lowest = isinf(n->lowest) ? NEWTON_LEAST_TOLD : fmin(1.0, fmax(n->lowest, NEWTON_LEAST_TOLD));
     double error = newton_longest(n, n->scaled, &report->worst_node) / lowest;
     bool at_rest = report->move <= DBL_EPSILON * n->body_size || !(square > 0.0);
-    report->error = at_rest ? 0.0 : error / report->move;
+    report->error = !isfinite(square) ? INFINITY : at_rest ? 0.0 : error / report->move;
 }
 
 /* The error estimate that round-off alone causes, some units in the last place of positions. */

@@ -112,6 +112,7 @@ static void take_multipliers(struct newton *n)
 bool newton_begin_increment(struct newton *n, double from, double change)
 {
     double target = newton_load_to_hold(n);
+    n->corrections = 0;
     newton_set_load(n, from, from + change > target * (1.0 - 1e-12) ? target : from + change);
     predict(n, change);
     system_predict_friction(n->system, newton_held_by_friction(n));
@@ -149,7 +150,7 @@ bool newton_take_increment(struct newton *n, double from, double change)
     take_step(n);
     n->load_change = fmin(n->most_change, fmax(2.0 * n->last_change, shorter * change));
     n->report->loading_steps++;
-    n->corrections = n->uphill = 0;
+    n->uphill = 0;
     n->above = 0.0;
     n->judged = n->rests = n->settled = false;
     return true;
@@ -204,13 +205,21 @@ void newton_let_slip(struct newton *n)
     n->settled = true;
 }
 
+/* What a correction leaves of the residual's norm: `left`, or less where half the tolerance asks for that and
+ * no further step then. */
+static double share_left(const struct newton *n)
+{
+    double wanted = 0.5 * n->options->tolerance / n->report->error;
+    return wanted > 0.25 * left ? fmin(wanted, left) : left;
+}
+
 /* The step of the model from u. Where that has no minimum, as friction does not hold the body, the pressures
  * may still be those of a step before, or of another distribution of friction: the body sticks until they
  * have settled. */
 static bool solve(struct newton *n)
 {
     memset(n->step, 0, (size_t)n->size * sizeof *n->step);
-    bool whole = newton_solve_model(n, n->settled ? left_at_first : left, n->radius);
+    bool whole = newton_solve_model(n, n->settled ? left_at_first : share_left(n), n->radius);
     n->settled = false;
     if (whole || n->sticks || !newton_held_by_friction(n)) {
         return whole;
