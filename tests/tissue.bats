@@ -117,6 +117,16 @@ brain='model = ogden\nmu = 842\nalpha = -4.7\nkappa = 8.42e7\nprony = .45 .5, .3
     mts print energy.frames stretched.dat | awk '$4 < before - 1e-9 { bad = 1 } { before = $4 } END { exit bad || NR != 1001 }'
 }
 
+# At time 0 nothing acts on it yet but round-off.
+@test "prony: a block that rests on a floor is pressed in time" {
+    cloud -d 2 -k jittered -n 9 --seed 4 --jitter 0.15 --box 0,0.1,0,0.1 | shapefn > block.mts 2> note
+    printf -- '-1 0\n1 0\n' > floor.tsv
+    printf '%s\n' '[scene]' 'dim = 2' 'analysis = quasi-static' 'duration = 5' '[material m]' 'region = body' 'mu = 1000' 'nu = .483' 'prony = .3 .2' \
+        '[displacement top]' 'facets = ymax' 'components = 0, -0.008' 'curve = linear' '[contact f]' 'facets = ymin' 'rigid = floor.tsv' 'unit = m' 'side = left' \
+        '[output]' 'reactions = yes' > press.scene
+    mtled press.scene block.mts | mts print reactions | awk '{ y[NR] = $2 } END { exit !(NR == 2 && y[2] > 10 && (y[1] / y[2] + 1) ^ 2 < 1e-8) }'
+}
+
 # The references are incompressible: of kappa = 1e5 mu, 1e-5 less. Twice as many steps: a quarter of the error.
 @test "prony: brain tissue at three rates, and the order of the update" {
     cloud -d 3 -k regular -n 2 --box 0,1,0,1,0,1 2> note | shapefn > cube.mts 2>> note

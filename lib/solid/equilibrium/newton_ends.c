@@ -53,6 +53,12 @@ void newton_augment(struct newton *n)
     }
 }
 
+/* Some units in the last place of positions, m. */
+static double round_off(const struct newton *n)
+{
+    return 32.0 * DBL_EPSILON * n->body_size;
+}
+
 void newton_estimate(struct newton *n)
 {
     struct statics_report *report = n->report;
@@ -61,14 +67,8 @@ void newton_estimate(struct newton *n)
     report->move = fmax(move, n->options->tolerance * n->largest_move);
     double lowest = isinf(n->lowest) ? NEWTON_LEAST_TOLD : fmin(1.0, fmax(n->lowest, NEWTON_LEAST_TOLD));
     double error = newton_longest(n, n->scaled, &report->worst_node) / lowest;
-    bool at_rest = report->move <= DBL_EPSILON * n->body_size || !(square > 0.0);
+    bool at_rest = report->move <= round_off(n) || !(square > 0.0);
     report->error = !isfinite(square) ? INFINITY : at_rest ? 0.0 : error / report->move;
-}
-
-/* The error estimate that round-off alone causes, some units in the last place of positions. */
-static double round_off(const struct newton *n)
-{
-    return 32.0 * DBL_EPSILON * n->body_size / n->report->move;
 }
 
 /* Note progress at this load: neither a body that slides comes to its end, nor one that is not let slip.
@@ -99,7 +99,7 @@ static bool is_found(struct newton *n, bool vain)
     }
     if (vain) {
         bool hovers = system_has_touched(n->system) && !newton_held_by_friction(n);
-        most = fmax(most, hovers ? most_hovering : round_off(n));
+        most = fmax(most, hovers ? most_hovering : round_off(n) / report->move);
     }
     bool pressures = !body_is_limited(&n->system->body) || n->pressures_lack <= most_lack(n);
     bool contacts = !contacts_lack(n) || n->corrections >= NEWTON_MOST_AUGMENTATIONS;
