@@ -38,6 +38,8 @@ static bool goes_on(struct newton *n, struct error *error)
     n->rests = true;
     n->uphill = 0; /* as at every equilibrium */
     n->above = 0.0;
+    n->best_error = INFINITY; /* which is progress */
+    n->best_step = n->report->steps;
     n->failure = n->load == newton_load_to_hold(n) ? newton_give_frame(n, error) : STATUS_OK;
     return n->failure == STATUS_OK && n->load < 1.0;
 }

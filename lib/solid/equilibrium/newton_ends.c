@@ -101,7 +101,8 @@ static bool is_found(struct newton *n, bool vain)
         bool hovers = system_has_touched(n->system) && !newton_held_by_friction(n);
         most = fmax(most, hovers ? most_hovering : round_off(n) / report->move);
     }
-    bool pressures = !body_is_limited(&n->system->body) || n->pressures_lack <= most_lack(n);
+    bool rounds = report->error <= (vain ? round_off(n) / report->move : 0.0); /* and so do the pressures */
+    bool pressures = rounds || !body_is_limited(&n->system->body) || n->pressures_lack <= most_lack(n);
     bool contacts = !contacts_lack(n) || n->corrections >= NEWTON_MOST_AUGMENTATIONS;
     report->penetration = system_contact_miss(n->system);
     report->penetration_allowed = system_penetration_allowed(report->move);

@@ -126,6 +126,13 @@ bool newton_begin_increment(struct newton *n, double from, double change)
     return whole;
 }
 
+/* Whether what the trial lacks is less than the step: from a prediction that has next to no residual, any
+ * grows. */
+static bool lacks_less(const struct newton *n)
+{
+    return !n->collapses && newton_longest(n, n->scaled, NULL) <= n->length;
+}
+
 bool newton_take_increment(struct newton *n, double from, double change)
 {
     double share = most_share(n), part = 1.0;
@@ -136,7 +143,7 @@ bool newton_take_increment(struct newton *n, double from, double change)
             newton_set_load(n, from, from + part * change);
             meet_conditions(n);
         }
-        if (try_step(n)) {
+        if (try_step(n) || lacks_less(n)) {
             break;
         }
         if (n->length < least_radius * n->spacing) {
@@ -248,7 +255,8 @@ bool newton_correct(struct newton *n)
     while (!try_step(n)) {
         if (!(n->length > least)) {
             n->lowest = lowest; /* that of a step that goes nowhere is one of round-off */
-            return false;
+            (void)newton_evaluate(n, n->u, &n->at_u);
+            return n->report->error <= n->options->tolerance; /* u needs no step, but perhaps pressures */
         }
         shorten(n, 0.5);
         whole = false;
