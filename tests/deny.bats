@@ -26,7 +26,7 @@ setup_file() {
     { block dynamic 'gravity = 0, -9.81' | sed 's/^rho/prony = .4 .01\n&/'; loads; contact; printf '[support side]\nfacets = xmin\nnormal = 10\ndamping = 1\n[membrane skin]\nfacets = xmax\nthickness = 1e-4\nE = 1e5\nnu = 0\n[solver]\nend_time = 0.01\n[output]\nenergy = yes\ngaps = yes\n'; } > moving.scene
     { pressed_cube zmin zmax -0.002; printf '[contact wall]\nfacets = xmin\nrigid = wall.tsv\nunit = m\nside = front\n'; } > cube.scene
     pair | nodes -u m | tag -f 'low=low:y,1%' -f 'high=high:y,1%' | shapefn > pair.mts 2> note
-    { pressed_block | sed 's/= ymin/= low/; s/= ymax/= high/'; printf '[contact faces]\nfacets = *\nagainst = *\nfriction = 0.1\n[solver]\ntime_steps = 2\n[output]\ngaps = yes\n'; } > pair.scene
+    { pressed_block | sed 's/= ymin/= low/; s/= ymax/= high/; s/^dim = 2/&\nduration = 1/; s/^nu = .*/&\nprony = .5 1/'; printf '[contact faces]\nfacets = *\nagainst = *\nfriction = 0.1\n[solver]\ntime_steps = 2\n[output]\ngaps = yes\n'; } > pair.scene
     mtled block.scene table.mts > u.mts
     mtled block.scene coarse.mts > u.coarse.mts
 }

@@ -3,6 +3,8 @@
 #include "solid/equilibrium/newton.h"
 #include "solid/equilibrium/relaxation.h"
 
+#include <math.h>
+
 static const char slides[] =
     ": friction may not hold the body, which slides then: use a smaller load or a dynamic "
     "scene";
@@ -87,48 +89,140 @@ static void put_error(const struct run *run)
     run_put(run, "iteration", 1, 1, "unit=m cols=error", error);
 }
 
+/* The error of steps of time that are chosen, and from which on it is noted; of the time: the longest step.
+ */
+static const double error_of_steps = 1e-3, error_noted = 1e-2, longest_step = 0.05;
+/* Of the time between two corners of load curves: the first step. */
+static const double first_of_segment = 0.1, same_time = 1e-9;
+
+/* Whether the steps are chosen by their error. */
+static bool chooses_steps(const struct run *run)
+{
+    return run->scene->duration > 0.0 && run->scene->solver.time_steps == 0;
+}
+
+static int64_t count_frames(const struct scene *scene)
+{
+    return scene->output.frames > 0 ? scene->output.frames : 1;
+}
+
 /* Steps: as many as asked for, or the next number that is a multiple of that of the frames. */
 static int64_t count_steps(const struct scene *scene)
 {
-    int64_t frames = scene->output.frames > 0 ? scene->output.frames : 1;
+    int64_t frames = count_frames(scene);
     return (scene->solver.time_steps + frames - 1) / frames * frames;
+}
+
+/* The times of corners of load curves before and after, as shares of the whole: before <= time < after, but
+ * for round-off; and the largest share of its largest factor that a curve has reached by then. */
+struct loading {
+    double before, after, reached;
+};
+
+static struct loading loading_at(const struct solid_system *system, double time)
+{
+    struct loading loading = {.after = 1.0};
+    for (int64_t c = 0; c < system->curve_count; c++) {
+        const struct load_curve *curve = &system->curves[c];
+        double factor = fabs(curve_value(curve, time));
+        for (int64_t i = 0; curve->kind == CURVE_TABLE && i < curve->count; i++) {
+            double at = curve->time[i] / curve->end;
+            if (at <= time + same_time) {
+                loading.before = fmax(loading.before, at);
+                factor = fmax(factor, fabs(curve->factor[i]));
+            } else {
+                loading.after = fmin(loading.after, at);
+            }
+        }
+        loading.reached = fmax(loading.reached, factor / fmax(curve_largest(curve), factor));
+    }
+    return loading;
+}
+
+/* A hold function: when the next step ends, which begins. Steps end at frames and at corners of load curves,
+ * behind which they are short again. */
+static double begin_step(void *context, double time)
+{
+    const struct run *run = context;
+    struct body *body = &run->model->system.body;
+    double duration = run->scene->duration, frames = (double)count_frames(run->scene);
+    if (!(time < 1.0)) {
+        return 1.0;
+    }
+    struct loading loading = loading_at(&run->model->system, time);
+    double least = fmin(body_first_step(body, error_of_steps) / duration,
+                        first_of_segment * (loading.after - loading.before));
+    double by = body_next_step(body, error_of_steps / loading.reached);
+    double step = by * body->prony.step / duration;
+    if (!(time > loading.before)) {
+        body_turn(body);
+        step = least;
+    }
+    step = fmin(fmax(step, least), longest_step);
+    double frame = floor((time + same_time) * frames + 1.0) / frames;
+    double end = fmin(loading.after, frame), left = end - time;
+    end = left <= step + same_time ? end : left < 2.0 * step ? time + 0.5 * left : time + step;
+    body_step(body, (end - time) * duration);
+    return end;
 }
 
 /* A frame_function: an equilibrium in time ends a step, and the next one begins. */
 static void end_step(void *context, int64_t number, double time, const double *u)
 {
     struct run *run = context;
+    const struct scene *scene = run->scene;
     struct body *body = &run->model->system.body;
-    int64_t steps = count_steps(run->scene), frames = run->scene->output.frames;
+    double frames = (double)count_frames(scene), frame = round(time * frames);
+    int64_t steps = count_steps(scene);
+    bool ends_frame =
+        chooses_steps(run) ? time == frame / frames : number % (steps / count_frames(scene)) == 0;
     body_accept(body);
     body_collect_history(body);
-    if (frames > 0 && number % (steps / frames) == 0) {
-        run_put_equilibrium(run, number / (steps / frames), time, u);
+    if (scene->output.frames > 0 && ends_frame) {
+        run_put_equilibrium(run, (int64_t)frame, time, u);
     }
     if (number < steps) {
-        body_step(body, run->scene->duration / (double)steps);
+        body_step(body, scene->duration / (double)steps);
+    }
+}
+
+/* Note an error of the steps of time that shows. */
+static void judge_steps(const struct run *run)
+{
+    double error = body_time_error(&run->model->system.body);
+    if (error > error_noted) {
+        tool_note(
+            run->tool,
+            "%s: the steps of time make an error of up to about %.2g of the largest stress: more of them "
+            "(time_steps) make less",
+            run->scene->path, error);
     }
 }
 
 void run_quasi_static(struct run *run)
 {
     const struct scene_solver *solver = &run->scene->solver;
-    const struct body *body = &run->model->system.body;
-    bool in_time = run->scene->duration > 0.0, in_steps = solver->time_steps > 0;
+    struct body *body = &run->model->system.body;
+    bool in_time = run->scene->duration > 0.0, in_steps = solver->time_steps > 0, chosen = chooses_steps(run);
     struct statics_options options = {.tolerance = solver->tolerance,
                                       .time_step_margin = solver->time_step_margin,
                                       .ramp_steps = solver->ramp_steps,
                                       .most_steps = solver->max_steps,
-                                      .frames =
-                                          in_steps ? count_steps(run->scene) : run->scene->output.frames,
+                                      .frames = chosen     ? 1
+                                                : in_steps ? count_steps(run->scene)
+                                                           : run->scene->output.frames,
                                       .in_time = in_time,
-                                      .frame = in_steps ? end_step : run_put_equilibrium,
+                                      .hold = chosen ? begin_step : NULL,
+                                      .frame = in_steps || in_time ? end_step : run_put_equilibrium,
                                       .progress = run_progress,
                                       .context = run,
                                       .restored = run_checkpoint_state(run)};
     struct statics_report report;
     struct error error;
     run_check_rigid_modes(run);
+    if (in_time) {
+        tool_check(run->tool, body_estimate_time_error(body, &error), &error);
+    }
     double started = clock_seconds();
     enum status status = (solver->method == SCENE_NEWTON ? newton_run : relaxation_run)(
         &run->model->system, &options, run->u, run->model->row_force, &report, &error);
@@ -141,6 +235,7 @@ void run_quasi_static(struct run *run)
     run_folds_check(run, run->u, report.load, true);
     run_stability_check(run, report.load);
     judge(run, &report);
+    judge_steps(run);
     put_error(run);
     if (run->verbose) {
         fprintf(stderr,
@@ -150,6 +245,9 @@ void run_quasi_static(struct run *run)
                 (long long)body->pair_count, (long long)report.steps, (long long)report.loading_steps,
                 (long long)report.force_evaluations);
         fprintf(stderr, "iteration error, m\t%.3g\ndiscretisation error, m\tsee fielderr\n", run->error);
+        if (in_time) {
+            fprintf(stderr, "error of the steps of time\t%.2g\n", body_time_error(body));
+        }
         fprintf(stderr, "estimated error\t%.3g\nfrequency ratio\t%.5g\nleast J\t%.4g\n", report.error,
                 report.largest_frequency / report.lowest_frequency, report.least_jacobian);
         run_report_springs(run);

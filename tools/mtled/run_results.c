@@ -236,7 +236,7 @@ static void put_energy(struct run *run, const struct instant *instant)
 {
     struct solid_system *system = &run->model->system;
     bool is_plane = run->scene->dim == 2;
-    bool in_time = run->scene->duration > 0.0, in_steps = run->scene->solver.time_steps > 0;
+    bool in_time = run->scene->duration > 0.0, in_steps = in_time || run->scene->solver.time_steps > 0;
     const char *unit = is_plane ? "J/m" : "J", *more = in_steps ? "," : "";
     int count = in_steps ? 3 : 2;
     char attributes[96];

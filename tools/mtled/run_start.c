@@ -15,7 +15,8 @@ void run_start_read(struct run *run)
     if (file == NULL) {
         return;
     }
-    if (scene->analysis == SCENE_DYNAMIC || scene->output.frames > 0 || scene->solver.time_steps > 0) {
+    if (scene->analysis == SCENE_DYNAMIC || scene->output.frames > 0 || scene->duration > 0.0 ||
+        scene->solver.time_steps > 0) {
         tool_fail(run->tool, STATUS_INPUT,
                   "--start: the run begins at the whole load: a scene in time, with friction, or that asks "
                   "for frames, has states before");
@@ -32,8 +33,8 @@ void run_start_read(struct run *run)
     }
 }
 
-/* A body that has been cut may be inverted, at the edge of an earlier cut, in a field that was none of its own:
- * then the run begins at half of that, and so on. */
+/* A body that has been cut may be inverted, at the edge of an earlier cut, in a field that was none of its
+ * own: then the run begins at half of that, and so on. */
 static void halve_inverted(struct run *run)
 {
     struct solid_system *system = &run->model->system;

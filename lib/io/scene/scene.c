@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-/* Steps of a quasi-static scene: of time; without duration, with friction, of the load. */
+/* Steps of a quasi-static scene: of time, without prony; without duration, with friction, of the load. */
 static const int64_t usual_time_steps = 50, usual_increments = 20;
 
 /* Append *added, zero except for its label. */
@@ -132,8 +132,9 @@ static enum status check_steps(struct scene *scene, struct error *error)
                     "%s: [solver]: time_steps: not allowed: the scene has neither duration nor friction",
                     scene->path);
     }
-    if ((scene->duration > 0.0 || friction != NULL) && scene->solver.time_steps == 0) {
-        scene->solver.time_steps = scene->duration > 0.0 ? usual_time_steps : usual_increments;
+    if (scene->duration > 0.0 ? !has_prony(scene) : friction != NULL) {
+        int64_t usual = scene->duration > 0.0 ? usual_time_steps : usual_increments;
+        scene->solver.time_steps = scene->solver.time_steps > 0 ? scene->solver.time_steps : usual;
     }
     return STATUS_OK;
 }

@@ -136,7 +136,8 @@ struct scene_solver {
     double tolerance;         /* estimated remaining error relative to the displacement; default 1e-5 */
     int64_t max_steps;        /* 0: not given */
     int64_t ramp_steps;       /* steps over which a quasi-static load is applied; 0: not given */
-    int64_t time_steps;       /* of a quasi-static scene with duration or friction; 0: of others */
+    int64_t time_steps;       /* of a quasi-static scene with duration or friction; 0: of others, or
+                                 to be chosen */
     double end_time;          /* s, dynamic */
     double time_step_margin;  /* share of the estimated critical step; default .9, dynamic .8 */
     double damping;           /* 1/s, dynamic; default 0 */

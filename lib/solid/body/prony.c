@@ -74,6 +74,7 @@ enum status prony_build(struct body *body, struct error *error)
 void prony_free(struct prony *prony)
 {
     FREE_ALL(prony->steps, prony->history, prony->rest, prony->stress);
+    time_error_free(&prony->time_error);
     *prony = (struct prony){0};
 }
 
@@ -229,6 +230,9 @@ void body_accept(struct body *body)
     if (prony->terms == 0 || prony->accepted) {
         return;
     }
+    if (prony->time_error.rows != NULL) {
+        time_error_note(body);
+    }
 #pragma omp parallel for schedule(static) num_threads(body->threads)
     for (int64_t b = body->share.begin_block; b < body->share.end_block; b++) {
         if (body->blocks[b].relaxes) {
@@ -264,5 +268,5 @@ enum status prony_state(struct body *body, const struct state *state, struct err
     RETURN_IF_ERROR(state_visit(state, "prony", values, 3, error));
     set_steps(body, prony->step);
     prony->rest_step = NAN;
-    return STATUS_OK;
+    return time_error_state(body, state, error);
 }

@@ -13,6 +13,7 @@
 #pragma once
 
 #include "base/state.h"
+#include "solid/body/time_error.h"
 #include "solid/material/material.h"
 
 struct body;
@@ -41,6 +42,7 @@ struct prony {
     double rest_step;  /* in a step of this length; nan: none yet */
     double *stress;    /* PRONY_OFFSETS rows: X but for (10) at the last evaluation */
     double dissipated; /* by the terms, at the last call of body_energy, J (2D: J/m) */
+    struct time_error time_error;
 };
 
 /* Components of X at a point. */

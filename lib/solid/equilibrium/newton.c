@@ -40,14 +40,14 @@ static bool goes_on(struct newton *n, struct error *error)
     n->above = 0.0;
     n->best_error = INFINITY; /* which is progress */
     n->best_step = n->report->steps;
-    n->failure = n->load == newton_load_to_hold(n) ? newton_give_frame(n, error) : STATUS_OK;
+    n->failure = n->load == n->hold ? newton_give_frame(n, error) : STATUS_OK;
     return n->failure == STATUS_OK && n->load < 1.0;
 }
 
 /* Whether the load grows in the next step. */
 static bool loads(const struct newton *n)
 {
-    return n->load < newton_load_to_hold(n) && n->uphill == 0 &&
+    return n->load < n->hold && n->uphill == 0 &&
            (n->slides ? n->rests : n->report->error < (n->waits ? error_waiting : error_between));
 }
 
@@ -61,7 +61,7 @@ static bool step(struct newton *n, struct error *error)
         return false;
     }
     if (loads(n)) {
-        double from = n->load, change = fmin(n->load_change, newton_load_to_hold(n) - from);
+        double from = n->load, change = fmin(n->load_change, n->hold - from);
         if (newton_begin_increment(n, from, change)) {
             n->waits = false;
             return newton_take_increment(n, from, change);
@@ -125,6 +125,7 @@ static enum status begin(struct newton *n, struct error *error)
     constraint_project(&n->preconditioner.constraint, system->factor, n->u);
     n->radius = fmin(n->spacing, n->longest_step);
     n->load_change = n->most_change;
+    n->hold = statics_load_to_hold(n->options, 0);
     n->rests = true;
     return measure(n, error);
 }

@@ -112,7 +112,7 @@ static bool is_found(struct newton *n, bool vain)
 bool newton_ends(struct newton *n, bool stuck, enum statics_outcome *outcome)
 {
     int64_t vain = note_progress(n);
-    bool holds = n->slides || n->load == newton_load_to_hold(n);
+    bool holds = n->slides || n->load == n->hold;
     bool found = n->corrections > 0 && holds && !n->sticks && is_found(n, stuck || vain > most_vain);
     bool away = statics_is_away(n->system, n->report, n->body_size);
     *outcome = found                                ? STATICS_CONVERGED

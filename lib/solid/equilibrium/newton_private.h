@@ -58,6 +58,7 @@ struct newton {
     int64_t best_step;     /* and when; the error has not halved since */
     int64_t corrections;   /* at this load */
     int64_t frames;        /* equilibria reported so far */
+    double hold;           /* load of the next one */
     enum status failure;
 };
 
@@ -117,7 +118,7 @@ bool newton_begin_increment(struct newton *n, double from, double change);
  * where no increment is small enough. */
 bool newton_take_increment(struct newton *n, double from, double change);
 
-/* A Newton step at this load. False where not even a short one is admitted. */
+/* A Newton step at this load. False where not even a short one is admitted, and u is not in equilibrium. */
 bool newton_correct(struct newton *n);
 
 /* Leave an equilibrium along the last search direction if the stiffness along it is negative, twice as far
@@ -160,9 +161,6 @@ void newton_release(struct newton *n);
 
 /* Visit all that the next step needs from the steps before; see base/state.h. */
 MUST_CHECK enum status newton_visit(void *run, const struct state *state, struct error *error);
-
-/* The load of the next equilibrium: that of the next frame, or 1. */
-double newton_load_to_hold(const struct newton *n);
 
 /* Call the caller's progress function; false where that ends the run. */
 bool newton_tell(struct newton *n);

@@ -60,6 +60,7 @@ enum status newton_visit(void *run, const struct state *state, struct error *err
         {"best_step", STATE_COUNTS, &n->best_step, 1},
         {"corrections", STATE_COUNTS, &n->corrections, 1},
         {"frames", STATE_COUNTS, &n->frames, 1},
+        {"hold", STATE_NUMBERS, &n->hold, 1},
         {"held", STATE_NUMBERS, pressures->held, pressures->matrix.row_count},
         {"change", STATE_NUMBERS, pressures->change, pressures->matrix.row_count},
         {"lack", STATE_NUMBERS, &n->pressures_lack, 1},
@@ -73,11 +74,6 @@ enum status newton_visit(void *run, const struct state *state, struct error *err
     RETURN_IF_ERROR(state_visit(state, NULL, values, sizeof values / sizeof *values, error));
     RETURN_IF_ERROR(preconditioner_state(&n->preconditioner, state, error));
     return system_state(n->system, state, error);
-}
-
-double newton_load_to_hold(const struct newton *n)
-{
-    return statics_load_to_hold(n->options, n->frames);
 }
 
 bool newton_tell(struct newton *n)
@@ -101,5 +97,7 @@ enum status newton_give_frame(struct newton *n, struct error *error)
 {
     RETURN_IF_ERROR(newton_row_forces(n, error));
     statics_give_frame(n->options, statics_load_share(n->system, n->load), n->u, &n->frames);
+    n->hold = n->options->hold != NULL ? n->options->hold(n->options->context, n->load)
+                                       : statics_load_to_hold(n->options, n->frames);
     return STATUS_OK;
 }

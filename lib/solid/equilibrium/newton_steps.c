@@ -111,7 +111,7 @@ static void take_multipliers(struct newton *n)
 
 bool newton_begin_increment(struct newton *n, double from, double change)
 {
-    double target = newton_load_to_hold(n);
+    double target = n->hold;
     n->corrections = 0;
     newton_set_load(n, from, from + change > target * (1.0 - 1e-12) ? target : from + change);
     predict(n, change);
