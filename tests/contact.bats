@@ -83,6 +83,14 @@ lid() {
     [[ "$(cat said)" == 'mtled: lid.scene: contacts penetrate by '*' m, not '*' m, most [contact lid]: a larger stiffness, with shorter steps, or a finer cloud there helps' ]]
 }
 
+@test "a body that no contact presses at the end, and that nothing else holds, is told" {
+    cloud -d 2 -k regular -n 5 --box 0,0.1,0,0.1 | shapefn > block.mts 2> note
+    printf '%s\n' '0.1 -1' '0.1 1' > plate.tsv
+    { block quasi-static && printf '[output]\nframes = 1\n' # at rest, where the side is on the plate to round-off, none is told
+        printf '[displacement y]\nfacets = ymin\nnormal = 0\n[contact x]\nfacets = xmax\nrigid = plate.tsv\nunit = m\nside = left\ntranslation = -0.01, 0\ncurve = smooth\n'; } > lid.scene
+    notes 'mtled: lid.scene: at the end no contact presses the body, which nothing else holds: it may move along (1, 0), and lies anywhere; it may have slipped out of its contacts or turned over: frames show when'
+}
+
 @test "a block that walls enclose, at a pressure of 20 shear moduli: the closed form" {
     cloud -d 2 -k jittered -n 9 --jitter 0.15 --seed 3 --box 0,0.1,0,0.1 | shapefn > square.mts 2> note
     printf '%s\n' '0.1 -1' '0.1 1' > x.tsv

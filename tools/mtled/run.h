@@ -121,6 +121,10 @@ void run_quasi_static(struct run *run);
 /* Notes displacements, and motions of rigid surfaces, far larger than the body; exits for impossible ones. */
 void run_contacts_begin(const struct run *run);
 
+/* For the final state, whose displacement has this error, m: notes bodies that only contacts held, and that
+ * none presses any more. */
+void run_check_lost(const struct run *run, double error_left);
+
 /* For run->u, with the largest displacement `motion`, m: exits with a verdict, in a quasi-static scene, if
  * the remaining penetration of contacts takes too large a share of the forces. To first order that is half of
  * the work of the contact forces along it, by the stored energy: this is proportional to the square of the

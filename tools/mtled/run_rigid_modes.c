@@ -192,3 +192,49 @@ void run_check_rigid_modes(struct run *run)
         }
     }
 }
+
+/* Let only those bodies touch that contacts press at the end, by more than an error of the displacement
+ * gives, m. */
+static void mark_pressed(const struct run *run, const struct bodies *bodies, double error)
+{
+    const struct solid_system *system = &run->model->system;
+    memset(bodies->touches, 0, (size_t)bodies->count * sizeof *bodies->touches);
+    for (int64_t c = 0; c < system->contact_count; c++) {
+        const struct contact *contact = &system->contacts[c];
+        const struct contact_between *between = contact->between;
+        for (int64_t p = 0; p < contact->count; p++) {
+            if (contact->pressure[p] <= contact->stiffness[p] * error) {
+                continue;
+            }
+            bodies->touches[bodies->of_node[contact->points->node[p]]] = true;
+            if (between != NULL) {
+                int64_t corner = between->opposite.surface.facet[between->view[p].facet * system->dim];
+                bodies->touches[bodies->of_node[between->opposite.rows.node[corner]]] = true;
+            }
+        }
+    }
+}
+
+void run_check_lost(const struct run *run, double error_left)
+{
+    FREED_BY(bodies_free) struct bodies bodies = {0};
+    const struct model *model = run->model;
+    if (model->system.contact_count == 0) {
+        return;
+    }
+    TOOL_TRY(run->tool, bodies_find(model, &bodies, &error));
+    mark_pressed(run, &bodies, error_left);
+    for (int64_t b = 0; b < bodies.count; b++) {
+        char body[256], what[512];
+        if (bodies.modes[b].translations + bodies.modes[b].turns == 0 || bodies.touches[b]) {
+            continue;
+        }
+        modes_text(model->assembly.cells.dim, model->assembly.extent, &bodies.modes[b], what, sizeof what);
+        TOOL_TRY(run->tool, body_text(model, &bodies, b, body, &error));
+        tool_note(
+            run->tool,
+            "%s: at the end no contact presses %s, which nothing else holds: it %s, and lies anywhere; it "
+            "may have slipped out of its contacts or turned over: frames show when",
+            run->scene->path, body, what);
+    }
+}
