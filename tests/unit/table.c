@@ -215,23 +215,38 @@ TEST(triangles)
     }
 
     fails_in(path, 3, "0 0 0 1 1 1 2 2 2\n", 18, 1, "triangle without area");
-    fails_in(stl_path, 3, binary, sizeof binary - 1, 1,
-             "control character"); /* truncated; begins with solid */
+    fails_in(stl_path, 3, binary, sizeof binary - 1, 1, "truncated?"); /* begins with solid */
     binary[0] = 'x';
     fails_in(stl_path, 3, binary, sizeof binary - 1, 0, "neither ASCII STL");
     put_float(binary + 84 + 12, (double)FLT_MAX * 4);
     fails_in(stl_path, 3, binary, sizeof binary, 0, "triangle 1: coordinate that is not finite");
     memset(binary + 80, 0, 4);
     fails_in(stl_path, 3, binary, 84, 0, "holds no triangle");
-    for (size_t size = 0; size < strlen(ascii); size++) { /* only the solid's closing name may go missing */
+    for (size_t size = 0; size < strlen(ascii) - 8;
+         size++) { /* only the solid's closing name may go missing */
         FREED_BY(table_free) struct table table = {0};
         write_to(stl_path, ascii, size);
         FAILS(surface_read(stl_path, 3, &table, &error), STATUS_INPUT, "");
     }
-    static const char twice[] = "solid\n" FACET "endsolid\nsolid\n" FACET "endsolid\n";
-    fails_in(stl_path, 3, twice, strlen(twice), 10, "text behind endsolid");
-    static const char comma[] = "solid\nfacet normal 0 0 1,0\n";
-    fails_in(stl_path, 3, comma, strlen(comma), 2, "'1,0' is not a finite number");
+    static const char behind[] = "solid\n" FACET "endsolid\n" FACET;
+    fails_in(stl_path, 3, behind, strlen(behind), 10, "'facet' stands outside of 'solid'");
+    static const char comma[] = "solid\nfacet normal 0 0 1\nouter loop\nvertex 1,0\n";
+    fails_in(stl_path, 3, comma, strlen(comma), 4, "'1,0' is not a finite number");
+}
+
+/* As other programs write them: several solids, CRLF, capitals, normals that are not a number, an open end.
+ */
+TEST(solids)
+{
+    static const char text[] =
+        "SOLID facet\r\n Facet Normal nan nan nan\r\n OUTER LOOP\r\n VERTEX 0 0 .5\r\nVERTEX 1 "
+        "0 .5\r\nVERTEX 0 1 .5\r\nENDLOOP ENDFACET\r\nENDSOLID facet\r\nsolid\n" FACET "endsolid";
+    FREED_BY(table_free) struct table table = {0};
+    write_to(stl_path, text, strlen(text));
+    GOOD(surface_read(stl_path, 3, &table, &error));
+    assert_int_equal(table.rows, 2);
+    assert_memory_equal(table.values, triangle, sizeof triangle);
+    assert_memory_equal(table.values + 9, triangle, sizeof triangle);
 }
 
 static int make_folder(void **state)

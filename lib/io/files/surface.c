@@ -63,10 +63,10 @@ struct words {
 /* Move to the next word; false at the end. */
 static bool next_word(struct words *words)
 {
-    for (; *words->at != '\0' && strchr(" \t\n", *words->at) != NULL; words->at++) {
+    for (; *words->at != '\0' && strchr(" \t\r\n", *words->at) != NULL; words->at++) {
         words->line += *words->at == '\n';
     }
-    size_t length = strcspn(words->at, " \t\n");
+    size_t length = strcspn(words->at, " \t\r\n");
     snprintf(words->word, sizeof words->word, "%.*s", (int)(length < 64 ? length : 63), words->at);
     words->at += length;
     return length > 0;
@@ -89,38 +89,52 @@ static enum status read_vector(struct words *words, double x[3], struct error *e
     return STATUS_OK;
 }
 
-/* Read "solid NAME", facets, "endsolid NAME", once. Of a facet its vertices count. */
+static bool is_word(const struct words *words, const char *word)
+{
+    return strcasecmp(words->word, word) == 0;
+}
+
+/* Read a word between "solid NAME" and "endsolid", of which the vertices and the ends of facets count.
+ * *line, *vertices, row: of the facet so far; *room: of the table. */
+static enum status read_stl_word(struct words *words, int64_t *line, int *vertices, double row[9],
+                                 struct table *table, int64_t *room, struct error *error)
+{
+    if (is_word(words, "facet")) {
+        *line = words->line;
+    } else if (is_word(words, "normal")) {
+        (void)(next_word(words) && next_word(words) && next_word(words));
+    } else if (is_word(words, "vertex") && *vertices < 3) {
+        return read_vector(words, row + 3 * (*vertices)++, error);
+    } else if (is_word(words, "endfacet") && *vertices == 3) {
+        *vertices = 0;
+        return table_append(table, row, *line, room, error);
+    } else if (!is_word(words, "outer") && !is_word(words, "loop") && !is_word(words, "endloop")) {
+        return fail_word(words, "has no place here: a facet has three lines 'vertex X Y Z'", error);
+    }
+    return STATUS_OK;
+}
+
+/* Read solids: "solid NAME", facets, "endsolid NAME". */
 static enum status read_ascii_stl(const char *path, const struct textfile *file, struct table *table,
                                   struct error *error)
 {
-    static const char *const others[] = {"facet", "outer", "loop", "endloop"};
-    struct words words = {.path = path, .at = file->text + strcspn(file->text, "\n"), .line = 1};
+    struct words words = {.path = path, .at = file->text, .line = 1};
     int64_t room = 0, line = 1;
     int vertices = 0;
-    double row[9], normal[3];
-    while (next_word(&words) && strcmp(words.word, "endsolid") != 0) {
-        bool known = false;
-        for (int i = 0; i < 4; i++) {
-            known = known || strcmp(words.word, others[i]) == 0;
-        }
-        if (strcmp(words.word, "normal") == 0) {
-            line = words.line;
-            RETURN_IF_ERROR(read_vector(&words, normal, error));
-        } else if (strcmp(words.word, "vertex") == 0 && vertices < 3) {
-            RETURN_IF_ERROR(read_vector(&words, row + 3 * vertices++, error));
-        } else if (strcmp(words.word, "endfacet") == 0 && vertices == 3) {
-            RETURN_IF_ERROR(table_append(table, row, line, &room, error));
-            vertices = 0;
-        } else if (!known) {
-            return fail_word(&words, "has no place here: a facet has three lines 'vertex X Y Z'", error);
+    bool open = false;
+    double row[9];
+    while (next_word(&words)) {
+        if (is_word(&words, "solid") || (is_word(&words, "endsolid") && vertices == 0)) {
+            open = !open && is_word(&words, "solid");
+            words.at += strcspn(words.at, "\n");
+        } else if (open) {
+            RETURN_IF_ERROR(read_stl_word(&words, &line, &vertices, row, table, &room, error));
+        } else {
+            return fail_word(&words, "stands outside of 'solid' and 'endsolid'", error);
         }
     }
-    if (words.word[0] == '\0' || vertices > 0) {
-        return fail_word(&words, "instead of 'endfacet' or 'endsolid': truncated?", error);
-    }
-    words.at += strcspn(words.at, "\n");
-    return next_word(&words) ? fail_word(&words, "is text behind endsolid: one solid is read", error)
-                             : STATUS_OK;
+    return open || vertices > 0 ? fail_word(&words, "instead of 'endfacet' or 'endsolid': truncated?", error)
+                                : STATUS_OK;
 }
 
 static enum status read_stl(const char *path, struct table *table, struct error *error)
@@ -130,8 +144,7 @@ static enum status read_stl(const char *path, struct table *table, struct error 
     RETURN_IF_ERROR(bytefile_read(path, size_limit, &file, error));
     if (binary_stl_size(&file) == file.size) {
         RETURN_IF_ERROR(read_binary_stl(path, &file, table, error));
-    } else if (strncmp(file.text, "solid", 5) == 0) {
-        RETURN_IF_ERROR(textfile_check(path, &file, error));
+    } else if (strncasecmp(file.text, "solid", 5) == 0) {
         RETURN_IF_ERROR(read_ascii_stl(path, &file, table, error));
     } else {
         return fail(

@@ -27,7 +27,8 @@ static enum status check_kind(const char *path, struct error *error)
     return STATUS_OK;
 }
 
-enum status textfile_check(const char *path, const struct textfile *file, struct error *error)
+/* The checks of textfile_read on bytes that bytefile_read has read. */
+static enum status textfile_check(const char *path, const struct textfile *file, struct error *error)
 {
     const unsigned char *bytes = (const unsigned char *)file->text;
     if (memcmp(file->text, "\xef\xbb\xbf", file->size < 3 ? 1 : 3) == 0 || bytes[0] >= 0xfe) {

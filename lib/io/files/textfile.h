@@ -23,8 +23,5 @@ MUST_CHECK enum status textfile_read(const char *path, size_t most, struct textf
 MUST_CHECK enum status bytefile_read(const char *path, size_t most, struct textfile *file,
                                      struct error *error);
 
-/* The checks of textfile_read on bytes that bytefile_read has read. */
-MUST_CHECK enum status textfile_check(const char *path, const struct textfile *file, struct error *error);
-
 /* Release the text; the struct becomes empty. */
 void textfile_free(struct textfile *file);
