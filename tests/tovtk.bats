@@ -54,6 +54,10 @@ vtu() {
     grep -q 'Name="region.grey&#60;&#38;&#34;matter" NumberOfTuples="1"' out.vtu
     [ "$(vtu values out.vtu 'region.grey<&"matter')" = 0 ]
     [ "$(vtu values out.vtu region.white)" = 1 ]
+    # of a mesh whose names are in Latin-1
+    two_triangles | sed $'s/white/wei\xdf/' | tovtk -t -o out.vtu
+    well_formed out.vtu
+    [ "$(vtu values out.vtu region.weiß)" = 1 ]
 }
 
 @test "VTK and meshio read the same: binary, text, with cells and without, in 2D and 3D" {

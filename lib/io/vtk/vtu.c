@@ -88,14 +88,30 @@ struct writer {
     int held_count;
 };
 
+/* The length of the character of UTF-8 that begins at `text`; 0: none does. */
+static int utf8_length(const char *text)
+{
+    unsigned char c = (unsigned char)text[0], next = (unsigned char)text[1];
+    int length = c < 0x80 ? 1 : c < 0xc2 ? 0 : c < 0xe0 ? 2 : c < 0xf0 ? 3 : c < 0xf5 ? 4 : 0;
+    for (int i = 1; i < length; i++) {
+        length = ((unsigned char)text[i] & 0xc0) == 0x80 ? length : 0;
+    }
+    bool too_long = (c == 0xe0 && next < 0xa0) || (c == 0xf0 && next < 0x90);
+    return too_long || (c == 0xed && next > 0x9f) || (c == 0xf4 && next > 0x8f) ? 0 : length;
+}
+
+/* Print a name, which may hold any bytes: those that are not UTF-8 are taken for Latin-1. */
 static void print_escaped(FILE *file, const char *text)
 {
-    for (; *text != '\0'; text++) {
+    for (int length; *text != '\0'; text += length > 0 ? length : 1) {
         unsigned char c = (unsigned char)*text;
-        if (strchr("<>&\"'", c) != NULL) {
+        length = utf8_length(text);
+        if (length == 0 || strchr("<>&\"'", c) != NULL) {
             fprintf(file, "&#%d;", c);
+        } else if (c < 0x20) {
+            fputc('?', file);
         } else {
-            fputc(c < 0x20 ? '?' : c, file);
+            fwrite(text, 1, (size_t)length, file);
         }
     }
 }
