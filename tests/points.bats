@@ -247,3 +247,18 @@ END
     { head_of 2; printf '[displacement m]\npoints = a.tsv\nunit = mm\n'; } > run.scene
     refused 1 "nothing holds the body: it may turn about (0.05, 0.05)" mtled run.scene block.mts
 }
+
+@test "a table is a fit: where it is off a row at a node that is told; points are exact" {
+    cloud -d 2 -k regular -n 11 --box 0,0.1,0,0.1 | shapefn > square.mts 2> note
+    awk 'BEGIN { for (i = 0; i <= 10; i++) print i / 100, 0.1, 0, (i < 5 ? 5 - i : i - 5) / 1000 }' > kink.tsv
+    for how in 'facets = ymax\ntable' points; do
+        { block quasi-static && held_below && printf "[displacement top]\n$how = kink.tsv\nunit = m\n"; } > kink.scene
+        mtled kink.scene square.mts 2> said > u.dat
+        if [ "$how" = points ]; then
+            [ ! -s said ]
+            paste <(mts print nodes.x u.dat) <(mts print u u.dat) | awk '$2 > 0.099 { d = $4 - ($1 < 0.05 ? 0.05 - $1 : $1 - 0.05) / 10; bad = bad || d > 1e-9 || d < -1e-9 } END { exit bad }'
+        else
+            grep 'kink.scene:[0-9]*: \[displacement top\]: table kink.tsv: at (0.05, 0.1) what is prescribed is off row 6 by 0.000[0-9]* m: the rows are fitted,' said
+        fi
+    done
+}

@@ -262,7 +262,7 @@ static enum status add_nodes(struct prescription *p, struct error *error)
     return add_all(p, &averages, NULL, averages.count, error);
 }
 
-static enum status add_condition(struct prescription *p, struct error *error)
+static enum status add_condition(struct prescription *p, struct error *note, struct error *error)
 {
     enum status status = STATUS_OK;
     int dim = p->input->cells.dim;
@@ -289,6 +289,9 @@ static enum status add_condition(struct prescription *p, struct error *error)
     } else {
         TRY(add_nodes(p, error));
     }
+    if (condition->kind == CONDITION_TABLE) {
+        TRY(prescription_check_fit(p, note, error));
+    }
 done:
     edge_paths_free(&paths);
     scattered_fit_free(&p->fit);
@@ -301,6 +304,7 @@ enum status assembly_add_conditions(const struct assembly *input, struct solid_s
 {
     FREED_BY(nodal_constraints_free) struct nodal_constraints nodal_constraints = {0};
     FREED_BY(held_free) struct held_directions held = {0};
+    note->text[0] = '\0';
     RETURN_IF_ERROR(held_build(input->cells.dim, input->cells.node_count, &held, error));
     /* Conditions that prescribe few directions come first, so that a side that slides along a plane stays on
      * it up to its rim. */
@@ -314,7 +318,7 @@ enum status assembly_add_conditions(const struct assembly *input, struct solid_s
                                      .number = (int32_t)i};
             if (p.condition->kind != CONDITION_POINTS &&
                 prescription_directions(p.condition, input->cells.dim) == directions) {
-                RETURN_IF_ERROR(add_condition(&p, error));
+                RETURN_IF_ERROR(add_condition(&p, note, error));
             }
         }
     }

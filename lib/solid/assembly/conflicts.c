@@ -50,7 +50,6 @@ static enum status compare(const struct assembly *input, const struct nodal_cons
 enum status nodal_constraints_check(const struct assembly *input, struct nodal_constraints *nodal_constraints,
                                     struct error *note, struct error *error)
 {
-    note->text[0] = '\0';
     NEW_SCRATCH(double, largest, input->condition_count, error);
     for (int64_t c = 0; c < nodal_constraints->count; c++) {
         double *most = &largest[nodal_constraints->list[c].condition];

@@ -21,8 +21,8 @@ void nodal_constraints_free(struct nodal_constraints *nodal_constraints);
 
 /* STATUS_INPUT if two conditions prescribe values at one node along one direction that differ by more than a
  * tenth of the largest value that either prescribes; the message names them. The first of smaller
- * differences, as between measured values, is reported in `note`, which is empty if all agree. The condition
- * with fewer directions takes precedence, else the one that comes first. */
+ * differences, as between measured values, is reported in `note`, unless that holds another one. The
+ * condition with fewer directions takes precedence, else the one that comes first. */
 MUST_CHECK enum status nodal_constraints_check(const struct assembly *input,
                                                struct nodal_constraints *nodal_constraints,
                                                struct error *note, struct error *error);

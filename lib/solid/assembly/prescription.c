@@ -9,6 +9,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* A fit that is off a row by more than this share of the largest displacement is noted. */
+static const double fit_share = 0.01;
+
 /* value[dim] = the displacement of the condition's table at x, near this node, m. */
 static enum status value_at(const struct prescription *p, int32_t node, const double *x, double *value,
                             struct error *error)
@@ -76,6 +79,46 @@ enum status prescription_check_table(const struct prescription *p, struct error 
                             (long long)sorted[t].item + 1, place, difference * condition->unit);
             }
         }
+    }
+    return STATUS_OK;
+}
+
+enum status prescription_check_fit(const struct prescription *p, struct error *note, struct error *error)
+{
+    const struct condition *condition = p->condition;
+    const struct cells *cells = &p->input->cells;
+    int dim = cells->dim;
+    int64_t worst = -1;
+    double largest = 0.0, most = 0.0;
+    char place[96];
+    NEW_SCRATCH(bool, holds, cells->node_count, error);
+    for (int64_t i = 0; i < p->nodal_constraints->count; i++) {
+        const struct nodal_constraint *one = &p->nodal_constraints->list[i];
+        holds[one->node] = holds[one->node] || one->condition == p->number;
+    }
+    for (int64_t i = 0; i < condition->row_count; i++) {
+        const double *row = condition->rows + i * 2 * dim, zeros[3] = {0.0, 0.0, 0.0};
+        int32_t node = p->fit.paths->node[i];
+        double at[3] = {0.0, 0.0, 0.0}, value[3] = {0.0, 0.0, 0.0};
+        largest = fmax(largest, condition->unit * apart(row + dim, zeros, dim));
+        add_scaled(dim, condition->unit, row, at);
+        if (node < 0 || !holds[node] ||
+            vector_distance(dim, cells->x + (int64_t)node * dim, at) > COARSE_ROUND_OFF * p->input->extent) {
+            continue;
+        }
+        RETURN_IF_ERROR(value_at(p, node, at, value, error));
+        add_scaled(dim, -condition->unit, row + dim, value);
+        worst = apart(value, zeros, dim) > most ? i : worst;
+        most = fmax(most, apart(value, zeros, dim));
+    }
+    if (most > fit_share * largest && note->text[0] == '\0') {
+        point_text(dim, cells->x + (int64_t)p->fit.paths->node[worst] * dim, place);
+        (void)fail(
+            note, STATUS_OK,
+            "%s: table %s: at %s what is prescribed is off row %lld by %.3g m: the rows are fitted, so "
+            "that noise averages out, and so do kinks, steps and short waves: give exact values as "
+            "points, or each smooth part its own section and table",
+            condition->where, condition->table, place, (long long)worst + 1, most);
     }
     return STATUS_OK;
 }

@@ -40,3 +40,9 @@ MUST_CHECK enum status prescription_check_table(const struct prescription *p, st
 MUST_CHECK enum status prescription_demand(const struct prescription *p,
                                            const struct boundary_averages *averages, int64_t a, bool at_node,
                                            struct demand *demand, struct error *error);
+
+/* Unless there is a note, *note receives one where what a table prescribes is off its row at a node of the
+ * condition by more than a hundredth of the largest displacement: by what the fit makes of kinks and short
+ * waves. Rows elsewhere are taken for measured ones, whose noise is to average out. */
+MUST_CHECK enum status prescription_check_fit(const struct prescription *p, struct error *note,
+                                              struct error *error);
