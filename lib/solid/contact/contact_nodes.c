@@ -7,9 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Of the Gauss-Seidel iteration for (20): sweeps, and the change in the last one by the largest. */
-enum { MOST_SWEEPS = 20 };
-static const double sweeps_left = 0.01;
+enum { SWEEPS = 6 }; /* of the Gauss-Seidel iteration for (20) */
 
 /* The hat function of contact node a at its sample s; without averages the points are the nodes. */
 static double hat(const struct contact *contact, int64_t a, int64_t s)
@@ -122,9 +120,8 @@ static double augmented(const struct contact *contact, int64_t a, double next[3]
     return compliance;
 }
 
-/* Change multiplier a so that (20) holds for it, with the others as they are. Returns the length of the
- * change, Pa. */
-static double augment_node(struct contact *contact, int64_t a)
+/* Change multiplier a so that (20) holds for it, with the others as they are. */
+static void augment_node(struct contact *contact, int64_t a)
 {
     const struct boundary_averages *averages = contact->averages;
     double *multiplier = contact->multiplier + a * contact->dim;
@@ -152,18 +149,13 @@ static double augment_node(struct contact *contact, int64_t a)
         int64_t p = averages != NULL ? averages->sample_point[s] : s;
         add_scaled(contact->dim, hat(contact, a, s), change, contact->held + p * contact->dim);
     }
-    return square > 0.0 ? vector_length(contact->dim, change) : 0.0;
 }
 
 void contact_augment(struct contact *contact)
 {
-    double first = 0.0, change = INFINITY;
-    for (int sweep = 0; sweep < MOST_SWEEPS && change > sweeps_left * first; sweep++) {
-        change = 0.0;
-        for (int64_t a = 0; a < contact_nodes(contact)->count; a++) {
-            change = fmax(change, augment_node(contact, a));
-        }
-        first = fmax(first, change);
+    int64_t count = contact_nodes(contact)->count;
+    for (int64_t k = 0; k < SWEEPS * count; k++) {
+        augment_node(contact, k % count);
     }
     contact_spread_multipliers(contact);
 }
