@@ -134,7 +134,7 @@ static enum status begin(struct newton *n, struct error *error)
 static enum status resume(struct newton *n, struct error *error)
 {
     RETURN_IF_ERROR(newton_visit(n, n->options->restored, error));
-    preconditioner_restore(&n->preconditioner, n->system);
+    preconditioner_factorise(&n->preconditioner, n->system);
     (void)newton_evaluate(n, n->u, &n->at_u);
     n->report->force_evaluations--; /* it counted before */
     return STATUS_OK;

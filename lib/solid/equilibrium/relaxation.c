@@ -348,7 +348,7 @@ static void begin(struct relaxation *r)
 static enum status resume(struct relaxation *r, struct error *error)
 {
     RETURN_IF_ERROR(visit(r, r->options->restored, error));
-    preconditioner_restore(&r->mass, r->system);
+    preconditioner_factorise(&r->mass, r->system);
     return STATUS_OK;
 }
 

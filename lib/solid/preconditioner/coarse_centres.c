@@ -5,7 +5,6 @@
 #include "solid/preconditioner/coarse_centres.h"
 
 #include "approx/visibility/edge_paths.h"
-#include "base/chunks.h"
 #include "base/memory.h"
 #include "base/queue.h"
 #include "base/sets.h"
@@ -18,7 +17,6 @@
 /* Radius of the shares, by the largest distance of a node from its nearest centre: 1.2 to 2.5 give as many
  * steps. */
 static const double radius_factor = 1.5;
-enum { NODES_FOR_THREAD = 10000 }; /* see chunks_of */
 
 /* What is known of all nodes. */
 struct ways {
@@ -167,11 +165,10 @@ static void reach_all(const struct coarse_space *coarse, struct ways *ways)
     }
 }
 
-static enum status choose(struct coarse_space *coarse, struct ways *ways, int64_t *from, struct error *error)
+static enum status choose(struct coarse_space *coarse, struct ways *ways, int64_t *from,
+                          struct search *search, struct error *error)
 {
-    FREED_BY(search_free) struct search search = {0};
     int64_t next = 0;
-    RETURN_IF_ERROR(search_begin(coarse->node_count, &search, error));
     for (int64_t n = 0; n < coarse->node_count; n++) {
         ways->least[n] = INFINITY;
     }
@@ -179,10 +176,10 @@ static enum status choose(struct coarse_space *coarse, struct ways *ways, int64_
         from[c] = next;
         memcpy(coarse->centre + c * coarse->dim, coarse->X + next * coarse->dim,
                (size_t)coarse->dim * sizeof *coarse->centre);
-        RETURN_IF_ERROR(find_near(coarse, ways, next, ways->least, &search, error));
-        for (int64_t i = 0; i < search.count; i++) {
-            ways->least[search.node[i]] = search.distance[i];
-            ways->nearest[search.node[i]] = (int32_t)c;
+        RETURN_IF_ERROR(find_near(coarse, ways, next, ways->least, search, error));
+        for (int64_t i = 0; i < search->count; i++) {
+            ways->least[search->node[i]] = search->distance[i];
+            ways->nearest[search->node[i]] = (int32_t)c;
         }
         for (int64_t n = 0; n < coarse->node_count; n++) {
             next = ways->least[n] > ways->least[next] ? n : next;
@@ -196,101 +193,50 @@ static enum status choose(struct coarse_space *coarse, struct ways *ways, int64_
     return STATUS_OK;
 }
 
-/* The nodes near a centre. */
-struct near {
-    int64_t count;
-    int32_t *node;
-    double *distance;
-};
-
-/* The nodes within the radius of some centres. */
-static enum status list_some(const struct coarse_space *coarse, const struct ways *ways, const int64_t *from,
-                             int64_t begin, int64_t end, struct near *near, struct error *error)
+/* The nodes within the radius of each centre; and those that it is nearest to, where only ways that lead
+ * farther away reach them. */
+static enum status list_near(struct coarse_space *coarse, const struct ways *ways, const int64_t *from,
+                             struct search *search, struct error *error)
 {
-    FREED_BY(search_free) struct search search = {0};
-    RETURN_IF_ERROR(search_begin(coarse->node_count, &search, error));
-    for (int64_t c = begin; c < end; c++) {
-        RETURN_IF_ERROR(find_near(coarse, ways, from[c], NULL, &search, error));
-        RETURN_IF_ERROR(NEW_ARRAY(&near[c].node, search.count, error));
-        RETURN_IF_ERROR(NEW_ARRAY(&near[c].distance, search.count, error));
-        near[c].count = search.count;
-        memcpy(near[c].node, search.node, (size_t)search.count * sizeof *search.node);
-        memcpy(near[c].distance, search.distance, (size_t)search.count * sizeof *search.distance);
-    }
-    return STATUS_OK;
-}
-
-/* Into one table, and with it the nodes that are in no list. */
-static enum status join_lists(struct coarse_space *coarse, const struct ways *ways, const struct near *near,
-                              struct error *error)
-{
-    int64_t entries = coarse->node_count, at = 0;
-    NEW_SCRATCH(bool, listed, coarse->node_count, error);
+    struct sparse *lists = &coarse->of_centre;
+    int64_t room = 0, values = 0;
+    NEW_SCRATCH(int64_t, listed, coarse->node_count, error); /* 1 + the last centre that lists it */
+    RETURN_IF_ERROR(sparse_new(coarse->centre_count, coarse->node_count, 0, lists, error));
     for (int64_t c = 0; c < coarse->centre_count; c++) {
-        entries += near[c].count;
-        for (int64_t i = 0; i < near[c].count; i++) {
-            listed[near[c].node[i]] = true;
+        RETURN_IF_ERROR(find_near(coarse, ways, from[c], NULL, search, error));
+        for (int64_t i = 0; i < search->count; i++) {
+            listed[search->node[i]] = c + 1;
         }
-    }
-    RETURN_IF_ERROR(sparse_new(coarse->centre_count, coarse->node_count, entries, &coarse->of_centre, error));
-    for (int64_t c = 0; c < coarse->centre_count; c++) {
-        memcpy(coarse->of_centre.idx + at, near[c].node, (size_t)near[c].count * sizeof *near[c].node);
-        memcpy(coarse->of_centre.value + at, near[c].distance,
-               (size_t)near[c].count * sizeof *near[c].distance);
-        at += near[c].count;
-        coarse->of_centre.ptr[c + 1] = at;
-    }
-    for (int64_t n = 0; n < coarse->node_count; n++) { /* on a way that leads farther away: hardly ever */
-        if (!listed[n]) {
-            int64_t end = coarse->of_centre.ptr[ways->nearest[n] + 1];
-            memmove(coarse->of_centre.idx + end + 1, coarse->of_centre.idx + end,
-                    (size_t)(at - end) * sizeof *coarse->of_centre.idx);
-            memmove(coarse->of_centre.value + end + 1, coarse->of_centre.value + end,
-                    (size_t)(at++ - end) * sizeof *coarse->of_centre.value);
-            coarse->of_centre.idx[end] = (int32_t)n;
-            coarse->of_centre.value[end] = 0.0;
-            for (int64_t c = ways->nearest[n]; c < coarse->centre_count; c++) {
-                coarse->of_centre.ptr[c + 1]++;
+        for (int64_t n = 0; n < coarse->node_count; n++) {
+            if (ways->nearest[n] == c && listed[n] != c + 1) {
+                note(search, n, ways->least[n]);
             }
         }
+        int64_t at = lists->ptr[c], end = at + search->count;
+        RETURN_IF_ERROR(GROW_ARRAY(&lists->idx, end, &room, error));
+        RETURN_IF_ERROR(GROW_ARRAY(&lists->value, end, &values, error));
+        memcpy(lists->idx + at, search->node, (size_t)search->count * sizeof *search->node);
+        memcpy(lists->value + at, search->distance, (size_t)search->count * sizeof *search->distance);
+        lists->ptr[c + 1] = end;
     }
     return STATUS_OK;
 }
 
-static enum status list_near(struct coarse_space *coarse, const struct ways *ways, const int64_t *from,
-                             struct near *near, struct error *error)
+static void ways_free(struct ways *ways)
 {
-    struct first_failure failure = {STATUS_OK};
-    struct chunks chunks = chunks_for_threads(coarse->centre_count, coarse->node_count, NODES_FOR_THREAD);
-#pragma omp parallel for schedule(static, 1) num_threads(chunks.threads)
-    for (int64_t c = 0; c < chunks.count; c++) {
-        struct error own;
-        int64_t begin = chunks_begin(&chunks, c), end = chunks_begin(&chunks, c + 1);
-        note_failure(&failure, c, list_some(coarse, ways, from, begin, end, near, &own), &own, error);
-    }
-    return failure.status == STATUS_OK ? join_lists(coarse, ways, near, error) : failure.status;
+    FREE_ALL(ways->part, ways->least, ways->nearest);
 }
 
 enum status coarse_centres_pick(struct coarse_space *coarse, const struct neighbours *neighbours,
                                 struct error *error)
 {
-    struct ways ways = {.neighbours = neighbours};
-    SCRATCH int64_t *from = NULL;
-    SCRATCH struct near *near = NULL;
-    enum status status;
-    TRY(NEW_ARRAY(&from, coarse->centre_count, error));
-    TRY(NEW_ARRAY(&near, coarse->centre_count, error));
-    TRY(NEW_ARRAY(&ways.least, coarse->node_count, error));
-    TRY(NEW_ARRAY(&ways.nearest, coarse->node_count, error));
-    if (neighbours != NULL) {
-        TRY(find_parts(coarse, &ways, error));
-    }
-    TRY(choose(coarse, &ways, from, error));
-    TRY(list_near(coarse, &ways, from, near, error));
-done:
-    for (int64_t c = 0; near != NULL && c < coarse->centre_count; c++) {
-        FREE_ALL(near[c].node, near[c].distance);
-    }
-    FREE_ALL(ways.part, ways.least, ways.nearest);
-    return status;
+    FREED_BY(ways_free) struct ways ways = {.neighbours = neighbours};
+    FREED_BY(search_free) struct search search = {0};
+    NEW_SCRATCH(int64_t, from, coarse->centre_count, error);
+    RETURN_IF_ERROR(NEW_ARRAY(&ways.least, coarse->node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&ways.nearest, coarse->node_count, error));
+    RETURN_IF_ERROR(neighbours != NULL ? find_parts(coarse, &ways, error) : STATUS_OK);
+    RETURN_IF_ERROR(search_begin(coarse->node_count, &search, error));
+    RETURN_IF_ERROR(choose(coarse, &ways, from, &search, error));
+    return list_near(coarse, &ways, from, &search, error);
 }

@@ -6,7 +6,6 @@
 #include "base/processor.h"
 #include "base/vector.h"
 #include "solid/constraint/held_directions.h"
-#include "solid/contact/contact_between.h"
 #include "solid/system/rigid_modes.h"
 
 #include <math.h>
@@ -17,19 +16,14 @@
 static const int64_t nodes_per_coarse_field = 8;
 /* Unknowns at most where each costs an evaluation: 16 centres in two dimensions and 8 in three. */
 static const int64_t most_unknowns = 96;
-/* Where the stiffness is assembled, centres by the cube root of the number of nodes: solving for them costs
- * about as much as the nodes do; */
-static const double centres_by_root = 5.0;
-/* and at most, as their matrices are dense. */
-static const double most_centres = 384.0;
+/* Centres at most where the stiffness is assembled: the matrices are dense, and more save no time. */
+static const int64_t most_centres = 64;
 
 static int64_t centre_count(const struct solid_system *system)
 {
     int64_t fields = system->dim + 1, most = most_unknowns / (fields * system->dim);
     int64_t count = system->node_count / (nodes_per_coarse_field * fields);
-    if (system->body.smoothed) {
-        most = (int64_t)fmin(most_centres, centres_by_root * cbrt((double)system->node_count));
-    }
+    most = system->body.smoothed ? most_centres : most;
     return count < most ? count : most;
 }
 
@@ -41,42 +35,22 @@ static enum status build_inverse(struct solid_system *system, struct preconditio
     return STATUS_OK;
 }
 
-/* Corner i of those opposite to points of contacts. */
-static struct average corner_at(const void *system, int64_t i)
-{
-    const struct solid_system *of = system;
-    int64_t c = 0;
-    for (; i >= contact_between_corners(&of->contacts[c]); c++) {
-        i -= contact_between_corners(&of->contacts[c]);
-    }
-    return contact_between_corner(&of->contacts[c], i);
-}
-
-/* The nodes that the conditions hold in all directions. */
-static enum status find_held(const struct solid_system *system, struct preconditioner *p, struct error *error)
+/* Let the coarse fields be zero at nodes that the conditions hold in all directions: P takes what they would
+ * move there, and contacts and elements are to see the fields without it. */
+static enum status leave_out_held(const struct solid_system *system, struct coarse_space *coarse,
+                                  struct error *error)
 {
     FREED_BY(held_free) struct held_directions held = {0};
-    RETURN_IF_ERROR(held_build(p->dim, p->node_count, &held, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&p->held, p->node_count, error));
+    RETURN_IF_ERROR(held_build(system->dim, system->node_count, &held, error));
     held_note(&held, &system->rows, 0, system->rows.count);
-    for (int64_t n = 0; n < p->node_count; n++) {
-        p->held[n] = held.count[n] == p->dim;
+    for (int64_t n = 0; n < system->node_count && coarse->count > 0; n++) {
+        int64_t end = held.count[n] == system->dim ? coarse->shares.ptr[n + 1] : 0;
+        for (int64_t i = coarse->shares.ptr[n]; i < end; i++) {
+            coarse->shares.value[i] = 0.0;
+        }
     }
-    return STATUS_OK;
-}
-
-/* What conditions and opposite corners see of the coarse fields. */
-static enum status take_means(const struct solid_system *system, struct preconditioner *p,
-                              struct error *error)
-{
-    int64_t corners = 0;
-    for (int64_t c = 0; c < system->contact_count; c++) {
-        corners += contact_between_corners(&system->contacts[c]);
-    }
-    RETURN_IF_ERROR(p->contact_node_count > 0 ? find_held(system, p, error) : STATUS_OK);
-    RETURN_IF_ERROR(coarse_mean_begin(&p->coarse, &p->mean, error));
-    RETURN_IF_ERROR(preconditioner_build_coarse_constraints(system, p, error));
-    return coarse_mean_table(&p->coarse, corners, corner_at, system, p->held, &p->mean, &p->opposite, error);
+    sparse_free(&coarse->of_centre);
+    return coarse->count > 0 ? sparse_transpose(&coarse->shares, &coarse->of_centre, error) : STATUS_OK;
 }
 
 enum status preconditioner_build(struct solid_system *system, bool coarse, struct preconditioner *p,
@@ -99,6 +73,7 @@ enum status preconditioner_build(struct solid_system *system, bool coarse, struc
     coarse = coarse && p->elements.body == NULL;
     RETURN_IF_ERROR(coarse_space_build(system->dim, system->node_count, system->X, system->node_lists,
                                        coarse ? centre_count(system) : 0, &p->coarse, error));
+    RETURN_IF_ERROR(leave_out_held(system, &p->coarse, error));
     p->size = p->coarse.count * p->dim;
     cells = p->size * p->size;
     RETURN_IF_ERROR(NEW_ARRAY(&p->active, p->contact_node_count, error));
@@ -107,13 +82,10 @@ enum status preconditioner_build(struct solid_system *system, bool coarse, struc
         RETURN_IF_ERROR(NEW_ARRAY(&p->sticks, p->contact_node_count, error));
     }
     RETURN_IF_ERROR(NEW_ARRAY(&p->body, cells, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&p->weight, p->coarse.count * p->coarse.count, error));
+    RETURN_IF_ERROR(coarse_rows_begin(&p->coarse, &p->rows, error));
     RETURN_IF_ERROR(NEW_ARRAY(&p->stiffness_factor, cells, error));
     RETURN_IF_ERROR(NEW_ARRAY(&p->amount, p->size, error));
     RETURN_IF_ERROR(p->contact_node_count > 0 ? NEW_ARRAY(&p->contacts, cells, error) : STATUS_OK);
-    if (p->size > 0) {
-        RETURN_IF_ERROR(take_means(system, p, error));
-    }
     if (coarse && system_has_inverse(system)) {
         RETURN_IF_ERROR(build_inverse(system, p, error));
     }
@@ -126,13 +98,18 @@ void preconditioner_free(struct preconditioner *p)
     coarse_space_free(&p->coarse);
     inverse_factor_free(&p->factor);
     stiffness_factor_free(&p->elements);
-    sparse_free(&p->opposite);
-    sparse_free(&p->conditions);
-    sparse_free(&p->of_field);
-    coarse_mean_free(&p->mean);
+    coarse_rows_free(&p->rows);
     FREE_ALL(p->vector, p->force, p->at_rest, p->stiffness, p->mass, p->body, p->active, p->normal, p->sticks,
-             p->held, p->weight, p->stiffness_factor, p->amount, p->contacts);
+             p->stiffness_factor, p->amount, p->contacts);
     *p = (struct preconditioner){0};
+}
+
+void preconditioner_set_mass(struct preconditioner *p, const double *stiffness)
+{
+    for (int64_t n = 0; n < p->node_count; n++) {
+        p->stiffness[n] = stiffness[n];
+        p->mass[n] = p->at_rest != NULL ? stiffness[n] / p->at_rest[n] : stiffness[n];
+    }
 }
 
 /* y = D^-1 x */

@@ -3,7 +3,7 @@
  * With a diagonal mass D that bounds the stiffness of each node, a load spreads by about one support in a
  * step, and the modes of the lowest frequencies determine the number of steps. On a few smooth fields Z
  * (coarse_space.h) the mass is therefore the stiffness itself: with the projection P onto motions that
- * satisfy the homogeneous conditions, and A made of the stiffness Z^T P K P Z (below equation (25)),
+ * satisfy the homogeneous conditions, and A made of the stiffness Z^T K Z (below equation (25)),
  *
  *   M^-1 = P (B + Z A^-1 Z^T) P
  *
@@ -16,18 +16,10 @@
 #pragma once
 
 #include "base/state.h"
-#include "solid/preconditioner/coarse_space.h"
+#include "solid/preconditioner/coarse_rows.h"
 #include "solid/preconditioner/inverse_stiffness.h"
 #include "solid/preconditioner/stiffness_factor.h"
 #include "solid/system/system.h"
-
-/* Means of the coarse fields, which are not zero for a few centres. */
-struct coarse_mean {
-    int64_t count;
-    int32_t *centre; /* centre_count: these centres, */
-    bool *seen;      /* centre_count: whether a centre is one of them */
-    double *field;   /* coarse.count */
-};
 
 struct preconditioner {
     int dim;
@@ -41,27 +33,18 @@ struct preconditioner {
     struct constraint constraint;     /* P */
     struct coarse_space coarse;       /* count 0: none, M = B^-1 */
     int64_t size;                     /* coarse.count * dim: rows and columns of the coarse matrices */
-    double *body; /* stiffness of body and constraint penalties along the coarse fields, P Z e_k, N/m (2D:
-                     N/m2) */
-    bool has_rigid_mode; /* the conditions leave the body free to move as a whole */
-    bool *active;        /* contact nodes of all contacts: those that A counts in (NULL: none), */
-    double *normal;      /* contact_node_count * dim: and the surface's normals there, */
+    double *body; /* size * size, of this and the next two the lower triangle: stiffness of body, penalties
+                     and conditions along the coarse fields, N/m (2D: N/m2); */
+    double *contacts;         /* of the contact nodes that A counts in (NULL without contacts); */
+    double *stiffness_factor; /* Cholesky factor of A */
+    bool has_rigid_mode;      /* the conditions leave the body free to move as a whole */
+    bool *active;             /* contact nodes of all contacts: those that A counts in (NULL: none), */
+    double *normal;           /* contact_node_count * dim: and the surface's normals there, */
     double *sticks; /* contact_node_count: and the share that friction holds; NULL: there is no friction */
     int64_t contact_node_count;
-    bool *held; /* node_count, where there are contacts: nodes that the conditions hold in all directions. P
-                   takes what the coarse fields move them by, so that contacts see the fields without it */
-    struct sparse
-        opposite; /* a row for each corner opposite to points, contact by contact: the coarse fields */
-    struct sparse conditions, of_field; /* a row for each list of the conditions' rows: the coarse fields'
-                                           means there, G Z but for the rows' directions; and the transpose */
-    struct coarse_mean mean;            /* scratch */
-    double
-        *weight; /* coarse.count * coarse.count: Z^T D Z with D = `stiffness`, the same in each direction */
-    double *contacts; /* stiffness along the coarse fields of the contact nodes that A counts in (NULL without
-                         contacts); of this and the factors' matrices the lower triangle */
-    double *stiffness_factor; /* Cholesky factor of A */
-    bool uses_coarse;         /* it exists; else M = B^-1 */
-    double *amount;           /* size: scratch */
+    struct coarse_rows rows; /* scratch */
+    bool uses_coarse;        /* it exists; else M = B^-1 */
+    double *amount;          /* size: scratch */
 };
 
 /* Allocate; build the coarse fields and the inverse factor for a system. `coarse` false: neither, M = D. */
@@ -102,8 +85,9 @@ MUST_CHECK enum status preconditioner_row_forces(struct preconditioner *precondi
 double preconditioner_square_diagonal(struct preconditioner *preconditioner, const double *x);
 
 /* The state for checkpoints, see base/state.h. Afterwards, in a run that was restored,
- * preconditioner_restore.
- */
+ * preconditioner_factorise. */
 MUST_CHECK enum status preconditioner_state(struct preconditioner *preconditioner, const struct state *state,
                                             struct error *error);
-void preconditioner_restore(struct preconditioner *preconditioner, const struct solid_system *system);
+
+/* The Cholesky factor of A, of what body and contacts are. */
+void preconditioner_factorise(struct preconditioner *preconditioner, const struct solid_system *system);

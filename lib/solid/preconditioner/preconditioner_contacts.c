@@ -1,7 +1,6 @@
 /* The mass along the coarse fields follows the contacts. */
 #include "solid/preconditioner/preconditioner_private.h"
 
-#include "base/dense.h"
 #include "base/vector.h"
 #include "solid/contact/contact_between.h"
 
@@ -23,63 +22,32 @@ static bool next_opposite(const struct contact *contact, int64_t a, int64_t *i, 
     return false;
 }
 
-/* The coarse fields' means at contact node a, less what is opposite; the contact's corners are those from
- * `corners` on. */
-static void take_fields(const struct preconditioner *p, const struct contact *contact, int64_t a,
-                        int64_t corners, struct coarse_mean *mean)
+/* Of the coarse fields, at contact node a less what is opposite: the mean along the normal, and along each
+ * direction without its part along that. */
+static void take_fields(const struct contact *contact, int64_t a, const double *normal,
+                        struct coarse_rows *rows)
 {
+    int count = contact->friction != NULL ? contact->dim + 1 : 1;
     struct average average = average_of_boundary(contact_nodes(contact), a);
-    const struct sparse *opposite = &p->opposite;
     int64_t corner;
-    double weight;
-    coarse_mean_of_average(&p->coarse, &average, p->held, mean);
+    double weight, direction[4 * 3] = {0.0};
+    int dim = contact->dim;
+    memcpy(direction, normal, (size_t)dim * sizeof *normal);
+    for (int i = 0; i < dim; i++) { /* T^T T = T for the projection T = 1 - n (x) n */
+        direction[(i + 1) * dim + i] = 1.0;
+        add_scaled(dim, -normal[i], normal, direction + (i + 1) * dim);
+    }
+    coarse_rows_clear(rows);
+    coarse_rows_add_average(rows, &average, 1.0, count, direction);
     for (int64_t i = 0; next_opposite(contact, a, &i, &corner, &weight);) {
-        for (int64_t k = opposite->ptr[corners + corner]; k < opposite->ptr[corners + corner + 1]; k++) {
-            coarse_mean_add(&p->coarse, opposite->idx[k], -weight * opposite->value[k], mean);
-        }
-    }
-}
-
-/* The lower triangle of matrix += stiffness row^T row, with row = the mean's fields along a direction. */
-static void add_square(const struct preconditioner *p, double stiffness, const double *direction,
-                       const struct coarse_mean *mean, double *matrix)
-{
-    int64_t dim = p->dim, fields = dim + 1, numbers = fields * dim;
-    double *row = p->amount;
-    for (int64_t i = 0; i < mean->count * numbers; i++) {
-        row[i] = mean->field[mean->centre[i / numbers] * fields + i % numbers / dim] * direction[i % dim];
-    }
-    for (int64_t s = 0; s < mean->count; s++) {
-        for (int64_t t = 0; t < mean->count; t++) {
-            if (mean->centre[t] > mean->centre[s]) {
-                continue;
-            }
-            for (int64_t i = 0; i < numbers; i++) {
-                double *to = matrix + (mean->centre[s] * numbers + i) * p->size + mean->centre[t] * numbers;
-                double factor = stiffness * row[s * numbers + i];
-                for (int64_t k = 0; k < numbers; k++) {
-                    to[k] += factor * row[t * numbers + k];
-                }
-            }
-        }
-    }
-}
-
-/* The same for all directions across a normal. */
-static void add_across(const struct preconditioner *p, double stiffness, const double *normal,
-                       const struct coarse_mean *mean, double *matrix)
-{
-    for (int i = 0; i < p->dim; i++) { /* T^T T = T for the projection T = 1 - n (x) n */
-        double across[3] = {0.0};
-        across[i] = 1.0;
-        add_scaled(p->dim, -normal[i], normal, across);
-        add_square(p, stiffness, across, mean, matrix);
+        average = contact_between_corner(contact, corner);
+        coarse_rows_add_average(rows, &average, -weight, count, direction);
     }
 }
 
 void preconditioner_add_contacts(struct preconditioner *p, const struct solid_system *system, double *matrix)
 {
-    int64_t dim = p->dim, at = 0, corners = 0;
+    int64_t dim = p->dim, at = 0;
     for (int64_t c = 0; c < system->contact_count; c++) {
         const struct contact *contact = &system->contacts[c];
         const struct boundary_averages *averages = contact_nodes(contact);
@@ -89,15 +57,14 @@ void preconditioner_add_contacts(struct preconditioner *p, const struct solid_sy
                 continue;
             }
             double stiffness = contact_node(contact, a).stiffness * averages->area[a];
-            take_fields(p, contact, a, corners, &p->mean);
+            take_fields(contact, a, p->normal + at * dim, &p->rows);
             if (p->active[at]) {
-                add_square(p, stiffness, p->normal + at * dim, &p->mean, matrix);
+                coarse_rows_square(&p->rows, 0, stiffness, matrix);
             }
-            if (sticks > 0.0) {
-                add_across(p, sticks * stiffness, p->normal + at * dim, &p->mean, matrix);
+            for (int i = 1; i <= dim && sticks > 0.0; i++) {
+                coarse_rows_square(&p->rows, i, sticks * stiffness, matrix);
             }
         }
-        corners += contact_between_corners(contact);
     }
 }
 
@@ -175,6 +142,6 @@ void preconditioner_follow(struct preconditioner *p, const struct solid_system *
         contact_between_take(contact);
     }
     if (p->size > 0 && system->contact_count > 0) {
-        preconditioner_factorise_both(p, system);
+        preconditioner_factorise(p, system);
     }
 }

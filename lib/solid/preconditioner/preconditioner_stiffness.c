@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Part of D that is added to the stiffness of the coarse space, so that modes without stiffness have a mass.
+/* By its diagonal: added to the stiffness of the coarse space, so that modes without stiffness have a mass.
  */
 static const double kept = 1e-6;
 enum { MOST_ATTEMPTS = 12 }; /* with ten times as much each time, until the stiffness is positive definite */
@@ -20,57 +20,36 @@ static int threads_for(int64_t size)
     return chunks_of(size * size, ENTRIES_FOR_THREAD).threads;
 }
 
-/* The lower triangle of matrix = body + contacts + keep weight. */
+/* The lower triangle of matrix = body + contacts, their diagonal times 1 + keep. */
 static void sum_stiffness(const struct preconditioner *p, double keep, double *matrix)
 {
-    int64_t size = p->size, dim = p->dim;
+    int64_t size = p->size;
 #pragma omp parallel for schedule(static, 16) num_threads(threads_for(size))
     for (int64_t i = 0; i < size; i++) {
         for (int64_t k = i * size; k <= i * size + i; k++) {
             matrix[k] = p->body[k] + (p->contacts != NULL ? p->contacts[k] : 0.0);
         }
-        for (int64_t k = i % dim; k <= i; k += dim) {
-            matrix[i * size + k] += keep * p->weight[i / dim * p->coarse.count + k / dim];
-        }
+        matrix[i * size + i] *= 1.0 + keep;
     }
 }
 
-double preconditioner_factorise(const struct preconditioner *p, double *matrix)
+void preconditioner_factorise(struct preconditioner *p, const struct solid_system *system)
 {
     double keep = kept;
-    /* Of an unstable body the stiffness is indefinite. */
-    for (int attempt = 0; attempt < MOST_ATTEMPTS; attempt++) {
-        sum_stiffness(p, keep, matrix);
-        if (dense_factorise(p->size, matrix)) {
-            return keep;
-        }
-        keep *= 10.0;
-    }
-    return 0.0;
-}
-
-void preconditioner_factorise_both(struct preconditioner *p, const struct solid_system *system)
-{
     if (p->elements.body != NULL) {
         stiffness_factor_make(&p->elements, p->dim, p->stiffness);
         return;
     }
-    if (p->size == 0) {
-        return;
-    }
-    if (p->contacts != NULL) {
+    if (p->contacts != NULL && p->size > 0) {
         memset(p->contacts, 0, (size_t)(p->size * p->size) * sizeof *p->contacts);
         preconditioner_add_contacts(p, system, p->contacts);
     }
-    p->uses_coarse = preconditioner_factorise(p, p->stiffness_factor) > 0.0;
-}
-
-static void make_symmetric(int64_t n, double *matrix)
-{
-    for (int64_t i = 0; i < n; i++) {
-        for (int64_t k = 0; k < i; k++) {
-            matrix[i * n + k] = matrix[k * n + i] = 0.5 * (matrix[i * n + k] + matrix[k * n + i]);
-        }
+    p->uses_coarse = false;
+    /* Of an unstable body the stiffness is indefinite. */
+    for (int attempt = 0; attempt < MOST_ATTEMPTS && p->size > 0 && !p->uses_coarse; attempt++) {
+        sum_stiffness(p, keep, p->stiffness_factor);
+        p->uses_coarse = dense_factorise(p->size, p->stiffness_factor);
+        keep *= 10.0;
     }
 }
 
@@ -117,9 +96,8 @@ enum status preconditioner_measure(struct preconditioner *p, struct solid_system
         RETURN_IF_ERROR(preconditioner_assemble(p, system, error));
     } else {
         RETURN_IF_ERROR(measure_by_differences(p, system, u, at_u, error));
-        make_symmetric(p->size, p->body);
         *evaluations += p->size;
     }
-    preconditioner_factorise_both(p, system);
+    preconditioner_factorise(p, system);
     return STATUS_OK;
 }

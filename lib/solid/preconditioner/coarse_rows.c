@@ -1,0 +1,145 @@
+#include "solid/preconditioner/coarse_rows.h"
+
+#include "base/memory.h"
+#include "base/processor.h"
+
+#include <string.h>
+
+enum status coarse_rows_begin(const struct coarse_space *coarse, struct coarse_rows *rows,
+                              struct error *error)
+{
+    int64_t centres = coarse->centre_count;
+    *rows = (struct coarse_rows){.coarse = coarse};
+    RETURN_IF_ERROR(NEW_ARRAY(&rows->centre, centres, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&rows->place, centres, error));
+    memset(rows->place, -1, (size_t)centres * sizeof *rows->place);
+    return NEW_ARRAY(&rows->value, centres, error);
+}
+
+void coarse_rows_free(struct coarse_rows *rows)
+{
+    FREE_ALL(rows->centre, rows->place, rows->value);
+    *rows = (struct coarse_rows){0};
+}
+
+void coarse_rows_clear(struct coarse_rows *rows)
+{
+    for (int64_t i = 0; i < rows->count; i++) {
+        rows->place[rows->centre[i]] = -1;
+    }
+    rows->count = 0;
+}
+
+/* The values of a centre, zero at first. */
+static double (*values_of(struct coarse_rows *rows, int32_t centre))[COARSE_MOST_NUMBERS]
+{
+    if (rows->place[centre] < 0) {
+        rows->place[centre] = (int32_t)rows->count;
+        rows->centre[rows->count] = centre;
+        memset(rows->value[rows->count++], 0, sizeof *rows->value);
+    }
+    return rows->value[rows->place[centre]];
+}
+
+/* The dimension is known when compiling, here and below. */
+KERNEL_INLINE void add(struct coarse_rows *rows, int dim, int64_t node, int count, const double *block)
+{
+    const struct coarse_space *coarse = rows->coarse;
+    for (int64_t i = coarse->shares.ptr[node]; i < coarse->shares.ptr[node + 1]; i++) {
+        double(*to)[COARSE_MOST_NUMBERS] = values_of(rows, coarse->shares.idx[i]), value[4];
+        coarse_space_values(coarse, node, coarse->shares.idx[i], coarse->shares.value[i], value);
+        for (int r = 0; r < count; r++) {
+            for (int k = 0; k < (dim + 1) * dim; k++) {
+                to[r][k] += block[r * dim + k % dim] * value[k / dim];
+            }
+        }
+    }
+}
+
+ALL_SETS void coarse_rows_add(struct coarse_rows *rows, int64_t node, int count, const double *block)
+{
+    if (rows->coarse->dim == 2) {
+        add(rows, 2, node, count, block);
+    } else {
+        add(rows, 3, node, count, block);
+    }
+}
+
+void coarse_rows_add_average(struct coarse_rows *rows, const struct average *average, double factor,
+                             int count, const double *direction)
+{
+    double block[COARSE_MOST_ROWS * 3];
+    for (int64_t i = 0; i < average->length; i++) {
+        for (int k = 0; k < count * rows->coarse->dim; k++) {
+            block[k] = factor * average->phi[i] * direction[k];
+        }
+        coarse_rows_add(rows, average->idx[i], count, block);
+    }
+}
+
+/* The block of a centre, above, and another one. */
+static double *block_of(const struct coarse_space *coarse, int numbers, int32_t above, int32_t below,
+                        double *matrix)
+{
+    return matrix + (above * coarse->count * coarse->dim + below) * numbers;
+}
+
+KERNEL_INLINE void square(const struct coarse_rows *rows, int dim, int row, double factor, double *matrix)
+{
+    int numbers = (dim + 1) * dim;
+    int64_t size = rows->coarse->count * dim;
+    for (int64_t s = 0; s < rows->count; s++) {
+        for (int64_t t = 0; t < rows->count; t++) {
+            if (rows->centre[t] > rows->centre[s]) {
+                continue;
+            }
+            const double *upper = rows->value[s][row], *lower = rows->value[t][row];
+            double *to = block_of(rows->coarse, numbers, rows->centre[s], rows->centre[t], matrix);
+            for (int i = 0; i < numbers; i++, to += size) {
+                double scaled = factor * upper[i];
+                for (int k = 0; k < numbers; k++) {
+                    to[k] += scaled * lower[k];
+                }
+            }
+        }
+    }
+}
+
+ALL_SETS void coarse_rows_square(const struct coarse_rows *rows, int row, double factor, double *matrix)
+{
+    if (rows->coarse->dim == 2) {
+        square(rows, 2, row, factor, matrix);
+    } else {
+        square(rows, 3, row, factor, matrix);
+    }
+}
+
+KERNEL_INLINE void multiply(const struct coarse_rows *rows, int dim, int64_t node, double *matrix)
+{
+    const struct coarse_space *coarse = rows->coarse;
+    int numbers = (dim + 1) * dim;
+    int64_t size = coarse->count * dim;
+    for (int64_t i = coarse->shares.ptr[node]; i < coarse->shares.ptr[node + 1]; i++) {
+        int32_t centre = coarse->shares.idx[i];
+        double value[4];
+        coarse_space_values(coarse, node, centre, coarse->shares.value[i], value);
+        for (int64_t t = 0; t < rows->count; t++) {
+            double *to = block_of(coarse, numbers, centre, rows->centre[t], matrix);
+            for (int k = 0; k < numbers && rows->centre[t] <= centre; k++, to += size) {
+                const double *product = rows->value[t][k % dim];
+                for (int j = 0; j < numbers; j++) {
+                    to[j] += value[k / dim] * product[j];
+                }
+            }
+        }
+    }
+}
+
+ALL_SETS void coarse_rows_multiply(const struct coarse_rows *rows, int64_t node, double *matrix)
+{
+    if (rows->coarse->dim == 2) {
+        multiply(rows, 2, node, matrix);
+    } else {
+        multiply(rows, 3, node, matrix);
+    }
+}

@@ -1,0 +1,35 @@
+/* What linear functionals of motions, such as a mean over a boundary, are of the coarse fields; private to
+ * lib/solid/preconditioner. */
+#pragma once
+
+#include "solid/constraint/average.h"
+#include "solid/preconditioner/coarse_space.h"
+
+enum { COARSE_MOST_ROWS = 4 };     /* functionals at once */
+enum { COARSE_MOST_NUMBERS = 12 }; /* fields of a centre times directions */
+
+struct coarse_rows {
+    const struct coarse_space *coarse; /* the caller's */
+    int64_t count;                     /* centres near: where they are not zero */
+    int32_t *centre;                   /* centre_count: these, */
+    int32_t *place;                    /* centre_count: where a centre is among these, or -1 */
+    double (*value)[COARSE_MOST_ROWS][COARSE_MOST_NUMBERS]; /* centre_count */
+};
+
+/* All are zero. Errors: STATUS_SYSTEM (memory). */
+MUST_CHECK enum status coarse_rows_begin(const struct coarse_space *coarse, struct coarse_rows *rows,
+                                         struct error *error);
+void coarse_rows_free(struct coarse_rows *rows);
+void coarse_rows_clear(struct coarse_rows *rows);
+
+/* Add block[count][dim] times what the fields move a node by to the first `count` functionals. */
+void coarse_rows_add(struct coarse_rows *rows, int64_t node, int count, const double *block);
+
+/* Add factor times the average along each of direction[count][dim]. */
+void coarse_rows_add_average(struct coarse_rows *rows, const struct average *average, double factor,
+                             int count, const double *direction);
+
+/* The lower triangle of matrix[size * size], size = coarse->count * dim, += factor row^T row of functional
+ * `row`; or what the fields move a node by, transposed, times the first dim of them. */
+void coarse_rows_square(const struct coarse_rows *rows, int row, double factor, double *matrix);
+void coarse_rows_multiply(const struct coarse_rows *rows, int64_t node, double *matrix);
