@@ -64,7 +64,6 @@ double system_largest_frequency(struct solid_system *system, struct precondition
         for (int64_t i = 0; i < size; i++) {
             displaced[i] = (residual[i] - response[i]) / epsilon;
         }
-        preconditioner_resist_open(p, system, mode, displaced);
         double product = vector_product(size, mode, displaced);
         preconditioner_apply(p, displaced, response);
         eigenvalue = vector_product(size, response, displaced) / product;

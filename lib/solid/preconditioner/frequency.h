@@ -7,8 +7,7 @@
 
 /* Largest frequency, the root of the largest eigenvalue of M^-1 K at u, by `iterations` steps of power
  * iteration that continue from mode[node_count * dim] (a start of zeros is replaced by a fixed pseudo-random
- * one). Contact nodes that the preconditioner counts in are taken as closed: within a step they may be.
- * residual must hold the residual at u. The estimate is from below; repeated calls sharpen it. scratch:
+ * one). residual must hold the residual at u. The estimate is from below; repeated calls sharpen it. scratch:
  * 2 * node_count * dim. */
 double system_largest_frequency(struct solid_system *system, struct preconditioner *preconditioner,
                                 const double *u, const double *residual, int iterations, double *mode,

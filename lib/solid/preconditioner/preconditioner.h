@@ -63,11 +63,6 @@ MUST_CHECK enum status preconditioner_measure(struct preconditioner *preconditio
                                               struct solid_system *system, const double *u,
                                               int64_t *evaluations, struct error *error);
 
-/* force += K_c move, with the stiffness K_c that the contact nodes counted in A may add to K at the last
- * evaluation: that of the nodes that are open and may close. move, force: node_count * dim. */
-void preconditioner_resist_open(const struct preconditioner *preconditioner,
-                                const struct solid_system *system, const double *move, double *force);
-
 /* Let A follow the contacts' last evaluation and penalties: nodes that are pressed count in; of a body with
  * free rigid-body modes all do, as it may come to rest on any. */
 void preconditioner_follow(struct preconditioner *preconditioner, const struct solid_system *system);

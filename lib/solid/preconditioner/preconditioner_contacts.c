@@ -68,64 +68,6 @@ void preconditioner_add_contacts(struct preconditioner *p, const struct solid_sy
     }
 }
 
-/* mean[dim] -= the field opposite contact node a. */
-static void take_opposite(const struct contact *contact, int64_t a, const double *field, double *mean)
-{
-    int64_t corner;
-    double weight, there[3];
-    for (int64_t i = 0; next_opposite(contact, a, &i, &corner, &weight);) {
-        struct average average = contact_between_corner(contact, corner);
-        average_take(&average, contact->dim, field, there);
-        for (int c = 0; c < contact->dim; c++) {
-            mean[c] -= weight * there[c];
-        }
-    }
-}
-
-/* The transpose. */
-static void spread_opposite(const struct contact *contact, int64_t a, const double *amount, double *field)
-{
-    int64_t corner;
-    double weight, there[3];
-    for (int64_t i = 0; next_opposite(contact, a, &i, &corner, &weight);) {
-        struct average average = contact_between_corner(contact, corner);
-        for (int c = 0; c < contact->dim; c++) {
-            there[c] = -weight * amount[c];
-        }
-        average_spread(&average, contact->dim, there, field);
-    }
-}
-
-void preconditioner_resist_open(const struct preconditioner *p, const struct solid_system *system,
-                                const double *move, double *force)
-{
-    int64_t dim = p->dim, at = 0;
-    if (p->active == NULL) { /* the mass of a dynamic run */
-        return;
-    }
-    for (int64_t c = 0; c < system->contact_count; c++) {
-        const struct contact *contact = &system->contacts[c];
-        const struct boundary_averages *averages = contact_nodes(contact);
-        for (int64_t a = 0; a < averages->count; a++, at++) {
-            if (!p->active[at]) {
-                continue;
-            }
-            struct contact_node node = contact_node(contact, a);
-            struct average average = average_of_boundary(averages, a);
-            const double *normal = p->normal + at * dim;
-            double mean[3], on_node[3], stiffness = node.stiffness * averages->area[a];
-            average_take(&average, (int)dim, move, mean);
-            take_opposite(contact, a, move, mean);
-            double along = vector_dot((int)dim, mean, normal);
-            for (int64_t i = 0; i < dim; i++) {
-                on_node[i] = stiffness * (1.0 - node.pressed) * along * normal[i];
-            }
-            average_spread(&average, (int)dim, on_node, force);
-            spread_opposite(contact, a, on_node, force);
-        }
-    }
-}
-
 void preconditioner_follow(struct preconditioner *p, const struct solid_system *system)
 {
     int64_t at = 0;
