@@ -54,14 +54,6 @@ enum status ranks_agree(const struct ranks *ranks, enum status status, struct er
     return (enum status)ranks->most(ranks, (int64_t)status);
 }
 
-enum status ranks_list(const struct ranks *ranks, int64_t value, int64_t **each, struct error *error)
-{
-    RETURN_IF_ERROR(NEW_ARRAY(each, ranks_count(ranks), error));
-    (*each)[ranks_rank(ranks)] = value;
-    ranks_gather(ranks, *each, sizeof **each, NULL);
-    return STATUS_OK;
-}
-
 enum status ranks_share(const struct ranks *ranks, int64_t items, const double *work, int64_t **first,
                         struct error *error)
 {

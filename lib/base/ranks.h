@@ -45,10 +45,6 @@ int64_t ranks_most(const struct ranks *ranks, int64_t value);
  * so that all go on or fail together. A single process gets its own status. */
 MUST_CHECK enum status ranks_agree(const struct ranks *ranks, enum status status, struct error *error);
 
-/* Collective. (*each)[count]: the value of each process; to be freed. */
-MUST_CHECK enum status ranks_list(const struct ranks *ranks, int64_t value, int64_t **each,
-                                  struct error *error);
-
 /* Divide a list of items into one range of about the same work for each process: (*first)[count + 1], to be
  * freed. work[items] >= 0; NULL: the same for all. */
 MUST_CHECK enum status ranks_share(const struct ranks *ranks, int64_t items, const double *work,
