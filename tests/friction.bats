@@ -35,7 +35,7 @@ in_space() {
     cloud -d 2 -k regular -n 16 --box 0,0.1,0,0.1 | shapefn > block.mts 2> note
     on_floor quasi-static 0.5 '4.9, -9.81' > slope.scene
     mtled -q slope.scene block.mts | rows u | awk '{ bad += $1 * $1 + $2 * $2 > 1e-4 } END { exit bad || NR < 256 }'
-    { on_floor quasi-static 0.5 '8, -9.81'; printf '[solver]\nmax_steps = 80\n'; } > slope.scene
+    { on_floor quasi-static 0.5 '8, -9.81'; printf '[solver]\nmax_steps = 120\n'; } > slope.scene
     refused 1 'friction may not hold the body, which slides then' mtled -q slope.scene block.mts
     cloud -d 3 -k regular -n 4 --box 0,0.1,0,0.1,0,0.1 | shapefn > cube.mts 2> note
     on_floor quasi-static 0.5 '4.88, -9.81' | in_space > slope.scene

@@ -82,6 +82,7 @@ enum status preconditioner_build(struct solid_system *system, bool coarse, struc
         RETURN_IF_ERROR(NEW_ARRAY(&p->sticks, p->contact_node_count, error));
     }
     RETURN_IF_ERROR(NEW_ARRAY(&p->body, cells, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&p->weight, p->coarse.count * p->coarse.count, error));
     RETURN_IF_ERROR(coarse_rows_begin(&p->coarse, &p->rows, error));
     RETURN_IF_ERROR(NEW_ARRAY(&p->stiffness_factor, cells, error));
     RETURN_IF_ERROR(NEW_ARRAY(&p->amount, p->size, error));
@@ -100,8 +101,31 @@ void preconditioner_free(struct preconditioner *p)
     stiffness_factor_free(&p->elements);
     coarse_rows_free(&p->rows);
     FREE_ALL(p->vector, p->force, p->at_rest, p->stiffness, p->mass, p->body, p->active, p->normal, p->sticks,
-             p->stiffness_factor, p->amount, p->contacts);
+             p->weight, p->stiffness_factor, p->amount, p->contacts);
     *p = (struct preconditioner){0};
+}
+
+/* weight = Z^T D Z */
+static void weigh_coarse_space(struct preconditioner *p)
+{
+    const struct coarse_space *coarse = &p->coarse;
+    const struct sparse *shares = &coarse->shares;
+    int64_t fields = p->dim + 1;
+    double one[4], other[4];
+    memset(p->weight, 0, (size_t)(coarse->count * coarse->count) * sizeof *p->weight);
+    for (int64_t n = 0; n < p->node_count && p->size > 0; n++) {
+        for (int64_t i = shares->ptr[n]; i < shares->ptr[n + 1]; i++) {
+            coarse_space_values(coarse, n, shares->idx[i], shares->value[i], one);
+            for (int64_t k = shares->ptr[n]; k < shares->ptr[n + 1]; k++) {
+                double *to = p->weight + shares->idx[i] * fields * coarse->count + shares->idx[k] * fields;
+                coarse_space_values(coarse, n, shares->idx[k], shares->value[k], other);
+                for (int64_t m = 0; m < fields * fields; m++) {
+                    to[m / fields * coarse->count + m % fields] +=
+                        p->stiffness[n] * one[m / fields] * other[m % fields];
+                }
+            }
+        }
+    }
 }
 
 void preconditioner_set_mass(struct preconditioner *p, const double *stiffness)
@@ -109,6 +133,9 @@ void preconditioner_set_mass(struct preconditioner *p, const double *stiffness)
     for (int64_t n = 0; n < p->node_count; n++) {
         p->stiffness[n] = stiffness[n];
         p->mass[n] = p->at_rest != NULL ? stiffness[n] / p->at_rest[n] : stiffness[n];
+    }
+    if (p->weight != NULL) {
+        weigh_coarse_space(p);
     }
 }
 
@@ -185,6 +212,7 @@ enum status preconditioner_state(struct preconditioner *p, const struct state *s
     const struct state_value values[] = {
         {"mass", STATE_NUMBERS, p->mass, p->node_count},
         {"stiffness", STATE_NUMBERS, p->stiffness, p->node_count},
+        {"weight", STATE_NUMBERS, p->weight, p->coarse.count * p->coarse.count},
         {"body", STATE_NUMBERS, p->body, p->size * p->size},
         {"elements", STATE_NUMBERS, p->elements.body, p->elements.factor.size},
         {"active", STATE_FLAGS, p->active, p->contact_node_count},

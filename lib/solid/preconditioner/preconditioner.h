@@ -33,13 +33,14 @@ struct preconditioner {
     struct constraint constraint;     /* P */
     struct coarse_space coarse;       /* count 0: none, M = B^-1 */
     int64_t size;                     /* coarse.count * dim: rows and columns of the coarse matrices */
-    double *body; /* size * size, of this and the next two the lower triangle: stiffness of body, penalties
-                     and conditions along the coarse fields, N/m (2D: N/m2); */
-    double *contacts;         /* of the contact nodes that A counts in (NULL without contacts); */
-    double *stiffness_factor; /* Cholesky factor of A */
-    bool has_rigid_mode;      /* the conditions leave the body free to move as a whole */
-    bool *active;             /* contact nodes of all contacts: those that A counts in (NULL: none), */
-    double *normal;           /* contact_node_count * dim: and the surface's normals there, */
+    /* Lower triangles, size * size, N/m (2D: N/m2): stiffness along the coarse fields of body, penalties and
+     * conditions; of the contact nodes that A counts in (NULL without contacts); Cholesky factor of A. */
+    double *body, *contacts, *stiffness_factor;
+    /* coarse.count * coarse.count: Z^T D Z with D = `stiffness`, the same in each direction. */
+    double *weight;
+    bool has_rigid_mode; /* the conditions leave the body free to move as a whole */
+    bool *active;        /* contact nodes of all contacts: those that A counts in (NULL: none), */
+    double *normal;      /* contact_node_count * dim: and the surface's normals there, */
     double *sticks; /* contact_node_count: and the share that friction holds; NULL: there is no friction */
     int64_t contact_node_count;
     struct coarse_rows rows; /* scratch */

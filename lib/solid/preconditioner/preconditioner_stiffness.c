@@ -20,16 +20,18 @@ static int threads_for(int64_t size)
     return chunks_of(size * size, ENTRIES_FOR_THREAD).threads;
 }
 
-/* The lower triangle of matrix = body + contacts, their diagonal times 1 + keep. */
+/* The lower triangle of matrix = body + contacts + keep weight. */
 static void sum_stiffness(const struct preconditioner *p, double keep, double *matrix)
 {
-    int64_t size = p->size;
+    int64_t size = p->size, dim = p->dim;
 #pragma omp parallel for schedule(static, 16) num_threads(threads_for(size))
     for (int64_t i = 0; i < size; i++) {
         for (int64_t k = i * size; k <= i * size + i; k++) {
             matrix[k] = p->body[k] + (p->contacts != NULL ? p->contacts[k] : 0.0);
         }
-        matrix[i * size + i] *= 1.0 + keep;
+        for (int64_t k = i % dim; k <= i; k += dim) {
+            matrix[i * size + k] += keep * p->weight[i / dim * p->coarse.count + k / dim];
+        }
     }
 }
 
