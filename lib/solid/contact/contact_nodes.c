@@ -7,17 +7,6 @@
 #include <math.h>
 #include <string.h>
 
-enum { SWEEPS = 6 }; /* of the Gauss-Seidel iteration for (20) */
-
-/* The hat function of contact node a at its sample s; without averages the points are the nodes. */
-static double hat(const struct contact *contact, int64_t a, int64_t s)
-{
-    const struct boundary_averages *averages = contact->averages;
-    return averages == NULL ? 1.0
-                            : averages->sample_share[s] * averages->area[a] /
-                                  contact->points->area[averages->sample_point[s]];
-}
-
 void contact_spread_multipliers(struct contact *contact)
 {
     const struct boundary_averages *averages = contact->averages;
@@ -31,7 +20,8 @@ void contact_spread_multipliers(struct contact *contact)
         const double *multiplier = contact->multiplier + a * contact->dim;
         for (int64_t s = averages->sample_ptr[a]; s < averages->sample_ptr[a + 1]; s++) {
             int64_t p = averages->sample_point[s];
-            add_scaled(contact->dim, hat(contact, a, s), multiplier, contact->held + p * contact->dim);
+            double weight = averages->sample_share[s] * averages->area[a] / contact->points->area[p];
+            add_scaled(contact->dim, weight, multiplier, contact->held + p * contact->dim);
         }
     }
 }
@@ -120,42 +110,12 @@ static double augmented(const struct contact *contact, int64_t a, double next[3]
     return compliance;
 }
 
-/* Change multiplier a so that (20) holds for it, with the others as they are. */
-static void augment_node(struct contact *contact, int64_t a)
-{
-    const struct boundary_averages *averages = contact->averages;
-    double *multiplier = contact->multiplier + a * contact->dim;
-    double sum[3] = {0.0, 0.0, 0.0}, direction[3] = {0.0, 0.0, 0.0}, change[3], along = 0.0, square = 0.0;
-    int64_t begin = averages != NULL ? averages->sample_ptr[a] : a;
-    int64_t end = averages != NULL ? averages->sample_ptr[a + 1] : a + 1;
-    for (int64_t s = begin; s < end; s++) {
-        int64_t p = averages != NULL ? averages->sample_point[s] : s;
-        if (!contact_between_led(contact, p)) {
-            double weight = hat(contact, a, s),
-                   part = weight * contact->points->area[p] / contact->stiffness[p];
-            add_difference(contact, p, part, sum, direction);
-            square += weight * part;
-        }
-    }
-    for (int c = 0; c < contact->dim && square > 0.0; c++) {
-        change[c] = sum[c] / square;
-        along += (multiplier[c] + change[c]) * direction[c];
-    }
-    for (int c = 0; c < contact->dim && square > 0.0; c++) {
-        change[c] = along > 0.0 ? change[c] : -multiplier[c];
-        multiplier[c] += change[c];
-    }
-    for (int64_t s = begin; s < end && square > 0.0; s++) {
-        int64_t p = averages != NULL ? averages->sample_point[s] : s;
-        add_scaled(contact->dim, hat(contact, a, s), change, contact->held + p * contact->dim);
-    }
-}
-
 void contact_augment(struct contact *contact)
 {
-    int64_t count = contact_nodes(contact)->count;
-    for (int64_t k = 0; k < SWEEPS * count; k++) {
-        augment_node(contact, k % count);
+    for (int64_t a = 0; a < contact_nodes(contact)->count; a++) {
+        double next[3];
+        (void)augmented(contact, a, next);
+        memcpy(contact->multiplier + a * contact->dim, next, (size_t)contact->dim * sizeof *next);
     }
     contact_spread_multipliers(contact);
 }

@@ -25,12 +25,6 @@ static double most_lack(const struct newton *n)
     return fmin(NODAL_PRESSURE_LACK, 10.0 * n->options->tolerance);
 }
 
-bool newton_augments(struct newton *n)
-{
-    return n->system->contact_count > 0 && n->corrections < NEWTON_MOST_AUGMENTATIONS &&
-           (n->corrections <= 1 || system_contact_miss(n->system) > n->options->tolerance * n->report->move);
-}
-
 void newton_augment(struct newton *n)
 {
     if (n->uphill > 0) {
@@ -38,7 +32,8 @@ void newton_augment(struct newton *n)
     }
     bool near = n->corrections > 0 && n->length < most_length * n->report->move;
     bool pressures = near && body_is_limited(&n->system->body);
-    bool contacts = newton_augments(n);
+    bool contacts = n->system->contact_count > 0 && n->corrections < NEWTON_MOST_AUGMENTATIONS &&
+                    (n->corrections <= 1 || contacts_lack(n));
     if (pressures) {
         n->pressures_lack =
             body_augment(&n->system->body, n->corrections > 1, most_lack(n), n->report->move / n->body_size);

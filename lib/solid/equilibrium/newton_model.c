@@ -177,14 +177,14 @@ static void note_products(struct newton *n, int products, double fallen, const s
 bool newton_solve_model(struct newton *n, double share, double radius)
 {
     double before = 0.0, length = newton_longest(n, n->step, NULL), mark = 0.0;
-    int augmentations = newton_augments(n) ? MOST_INNER : 0;
+    int augmentations = n->corrections < NEWTON_MOST_AUGMENTATIONS ? MOST_INNER : 0;
     struct newton_lanczos lanczos = {0};
     begin_model(n);
     for (int k = 0; k < MOST_ITERATIONS; k++) {
         double now = scale_gradient(n);
         n->square = k == 0 ? now : n->square;
         mark = k == 0 ? now : mark;
-        if (augmentations > 0 && now < inner_left * inner_left * mark) {
+        if (n->system->contact_count > 0 && now < inner_left * inner_left * mark && augmentations > 0) {
             augmentations--;
             system_augment_contacts(n->system);
             touch(n, 0.0);

@@ -133,9 +133,6 @@ bool newton_held_by_friction(const struct newton *n);
 
 /* ---- newton_ends.c ---- */
 
-/* Whether the multipliers of contacts have to advance at u, where the contacts were evaluated last. */
-bool newton_augments(struct newton *n);
-
 /* Let the multipliers of nodal pressures and contacts advance by what was evaluated at u, and evaluate it
  * with the new ones. */
 void newton_augment(struct newton *n);

@@ -112,7 +112,6 @@ static void take_multipliers(struct newton *n)
 bool newton_begin_increment(struct newton *n, double from, double change)
 {
     double target = n->hold;
-    n->corrections = 0;
     newton_set_load(n, from, from + change > target * (1.0 - 1e-12) ? target : from + change);
     predict(n, change);
     system_predict_friction(n->system, newton_held_by_friction(n));
@@ -157,7 +156,7 @@ bool newton_take_increment(struct newton *n, double from, double change)
     take_step(n);
     n->load_change = fmin(n->most_change, fmax(2.0 * n->last_change, shorter * change));
     n->report->loading_steps++;
-    n->uphill = 0;
+    n->corrections = n->uphill = 0;
     n->above = 0.0;
     n->judged = n->rests = n->settled = false;
     return true;
