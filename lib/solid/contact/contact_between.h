@@ -82,8 +82,7 @@ void contact_between_take(struct contact *contact);
 bool contact_between_part(const struct contact *contact, int64_t a, int64_t i, int64_t *corner,
                           double *weight);
 
-/* The number of opposite corners, 0 for a rigid surface; and the average that moves one of them. */
-int64_t contact_between_corners(const struct contact *contact);
+/* The average that moves an opposite corner. */
 struct average contact_between_corner(const struct contact *contact, int64_t corner);
 
 /* The averages to which the penalties of a contact may add stiffness, whatever touches, and that stiffness,

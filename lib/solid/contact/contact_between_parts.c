@@ -80,11 +80,6 @@ bool contact_between_part(const struct contact *contact, int64_t a, int64_t i, i
     return true;
 }
 
-int64_t contact_between_corners(const struct contact *contact)
-{
-    return contact->between == NULL ? 0 : contact->between->opposite.rows.count;
-}
-
 struct average contact_between_corner(const struct contact *contact, int64_t corner)
 {
     return average_of_boundary(&contact->between->opposite.rows, corner);
