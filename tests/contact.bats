@@ -104,6 +104,21 @@ lid() {
     rows reactions u.dat | awk 'NR == 1 { d = $1 / 1994.1378 - 1; print; exit !(d * d < 2e-3 ^ 2) }'
 }
 
+@test "a block that only four walls hold, two of which close by 40 %: the closed form" {
+    cloud -d 2 -k regular -n 7 --box 0,0.1,0,0.1 | shapefn > square.mts 2> note
+    printf '0 1\n0 -1\n' > xmin.tsv
+    printf -- '-1 0\n1 0\n' > ymin.tsv
+    printf '0.1 -1\n0.1 1\n' > xmax.tsv
+    printf '1 0.1\n-1 0.1\n' > ymax.tsv
+    { block quasi-static && printf '[output]\nreactions = yes\n'
+        for wall in 'xmin 0, 0' 'ymin 0, 0' 'xmax -0.04, 0' 'ymax 0, -0.04'; do
+            printf '[contact %s]\nfacets = %s\nrigid = %s.tsv\nunit = m\nside = left\ntranslation = %s\ncurve = smooth\n' "${wall%% *}" "${wall%% *}" "${wall%% *}" "${wall#* }"
+        done; } > walls.scene
+    mtled walls.scene square.mts 2> note > u.dat
+    # the law's stress at stretches of .6, .6, 1
+    rows reactions u.dat | awk '{ d = ($1 + $2) ^ 2 / 456.6797 ^ 2 - 1; bad += d * d > 1e-4 ^ 2 } END { exit bad || NR != 4 }'
+}
+
 @test "an asterisk is the whole boundary, of a mesh without names as well: a disc rests in a groove" {
     printf 'SetFactory("OpenCASCADE");\nDisk(1) = {0, 0, 0, 50};\nMesh.MeshSizeMin = 10;\nMesh.MeshSizeMax = 10;\n' > disc.geo
     gmsh -v 1 -2 disc.geo -o disc.msh

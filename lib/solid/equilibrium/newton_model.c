@@ -174,12 +174,42 @@ static void note_products(struct newton *n, int products, double fallen, const s
     }
 }
 
-bool newton_solve_model(struct newton *n, double share, double radius)
+/* Go along the search direction from u + step to the minimum of the model, by `most` times it at most.
+ * Returns the way. The model falls by `down` at first. */
+static double lower(struct newton *n, double down, double most)
 {
-    double before = 0.0, length = newton_longest(n, n->step, NULL), mark = 0.0;
+    multiply(n, n->search, n->product);
+    double way = search_along(n, down, vector_product(n->size, n->search, n->model.smooth),
+                              vector_product(n->size, n->search, n->product), most);
+    for (int64_t i = 0; i < n->size; i++) {
+        n->step[i] += way * n->search[i];
+        n->model.smooth[i] -= way * n->product[i];
+    }
+    return way;
+}
+
+/* Lower the model along the last increment's step. */
+static void continue_last(struct newton *n, double most)
+{
+    memcpy(n->search, n->last, (size_t)n->size * sizeof *n->search);
+    constraint_project(&n->preconditioner.constraint, NULL, n->search);
+    double down = vector_product(n->size, n->search, n->model.smooth) +
+                  vector_product(n->size, n->search, n->model.contact);
+    if (down > 0.0) {
+        (void)lower(n, down, most);
+    }
+}
+
+bool newton_solve_model(struct newton *n, double of_last, double share, double radius)
+{
+    double before = 0.0, mark = 0.0;
     int augmentations = n->corrections < NEWTON_MOST_AUGMENTATIONS ? MOST_INNER : 0;
     struct newton_lanczos lanczos = {0};
     begin_model(n);
+    if (of_last > 0.0) {
+        continue_last(n, of_last);
+    }
+    double length = newton_longest(n, n->step, NULL);
     for (int k = 0; k < MOST_ITERATIONS; k++) {
         double now = scale_gradient(n);
         n->square = k == 0 ? now : n->square;
@@ -197,13 +227,7 @@ bool newton_solve_model(struct newton *n, double share, double radius)
         }
         double part, down = turn_search(n, now, before, &part);
         double most = (radius - length) / newton_longest(n, n->search, NULL);
-        multiply(n, n->search, n->product);
-        double way = search_along(n, down, vector_product(n->size, n->search, n->model.smooth),
-                                  vector_product(n->size, n->search, n->product), most);
-        for (int64_t i = 0; i < n->size; i++) {
-            n->step[i] += way * n->search[i];
-            n->model.smooth[i] -= way * n->product[i];
-        }
+        double way = lower(n, down, most);
         if (way >= most) {
             return false;
         }

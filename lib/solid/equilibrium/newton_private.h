@@ -92,10 +92,11 @@ double newton_difference(const struct newton *n, const double *move);
 struct deformation newton_evaluate(struct newton *n, const double *u, struct newton_forces *forces);
 void newton_touch(struct newton *n, const double *u, struct newton_forces *forces);
 
-/* Lower the model at u, from n->step, until the norm of its gradient is below `share` of what it was at
- * first. False where the step reaches the radius at a node before, or where a body that friction alone holds
- * has not come to rest, as the pressures have not settled. n->square: the first norm squared. */
-bool newton_solve_model(struct newton *n, double share, double radius);
+/* Lower the model at u, from n->step, along the last increment, by `of_last` times it at most, and then until
+ * the norm of its gradient is below `share` of what it was. False where the step reaches the radius at a node
+ * before, or where a body that friction alone holds has not come to rest, as the pressures have not settled.
+ * n->square: that norm, squared. */
+bool newton_solve_model(struct newton *n, double of_last, double share, double radius);
 
 /* search . K search at u, with the stiffness of all but the contacts. */
 double newton_curvature(struct newton *n);

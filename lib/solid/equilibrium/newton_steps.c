@@ -87,18 +87,6 @@ static void meet_conditions(struct newton *n)
     constraint_project(&n->preconditioner.constraint, n->factor_change, n->step);
 }
 
-/* Start the model's step at what continues the last increment and follows the conditions. */
-static void predict(struct newton *n, double change)
-{
-    bool goes_on =
-        n->last_change != 0.0 && n->system->contact_count == 0; /* else it may go through a surface */
-    double part = goes_on ? change / n->last_change : 0.0;
-    for (int64_t i = 0; i < n->size; i++) {
-        n->step[i] = part * n->last[i];
-    }
-    meet_conditions(n);
-}
-
 /* Take the forces of contacts at u with the multipliers as they are now, which may have advanced with the
  * model. */
 static void take_multipliers(struct newton *n)
@@ -113,13 +101,16 @@ bool newton_begin_increment(struct newton *n, double from, double change)
 {
     double target = n->hold;
     newton_set_load(n, from, from + change > target * (1.0 - 1e-12) ? target : from + change);
-    predict(n, change);
+    memset(n->step, 0, (size_t)n->size * sizeof *n->step);
+    meet_conditions(n);
     system_predict_friction(n->system, newton_held_by_friction(n));
     (void)newton_evaluate(n, n->u, &n->at_u);
     if (n->slides) {
         preconditioner_follow(&n->preconditioner, n->system);
     }
-    bool whole = newton_solve_model(n, n->last_change != 0.0 ? left : left_at_first, far * n->body_size);
+    bool continues = n->last_change != 0.0;
+    bool whole = newton_solve_model(n, continues ? change / n->last_change : 0.0,
+                                    continues ? left : left_at_first, far * n->body_size);
     n->length = newton_longest(n, n->step, NULL);
     take_multipliers(n);
     return whole;
@@ -225,14 +216,14 @@ static double share_left(const struct newton *n)
 static bool solve(struct newton *n)
 {
     memset(n->step, 0, (size_t)n->size * sizeof *n->step);
-    bool whole = newton_solve_model(n, n->settled ? left_at_first : share_left(n), n->radius);
+    bool whole = newton_solve_model(n, 0.0, n->settled ? left_at_first : share_left(n), n->radius);
     n->settled = false;
     if (whole || n->sticks || !newton_held_by_friction(n)) {
         return whole;
     }
     hold(n, true);
     memset(n->step, 0, (size_t)n->size * sizeof *n->step);
-    return newton_solve_model(n, left, n->radius);
+    return newton_solve_model(n, 0.0, left, n->radius);
 }
 
 bool newton_correct(struct newton *n)
