@@ -185,14 +185,26 @@ enum status assembly_held_faces(const struct assembly *input, int least, bool **
     return STATUS_OK;
 }
 
-double assembly_penalty_modulus(const struct solid_system *system, double factor)
+enum status assembly_penalty_modulus(const struct assembly *input, const struct facet_set *set, double factor,
+                                     double *modulus, struct error *error)
 {
-    double modulus = 0.0;
-    for (int64_t m = 0; m < system->body.material_count; m++) {
-        const struct material *material = &system->body.materials[m];
-        modulus = fmax(modulus, fmin(factor * material->shear_modulus, material_wave_modulus(material)));
+    NEW_SCRATCH(bool, behind, input->cells.count, error);
+    NEW_SCRATCH(int64_t, face, set->count, error);
+    RETURN_IF_ERROR(faces_find(&input->boundary, set->count, set->facet, face, error));
+    for (int64_t f = 0; f < set->count; f++) {
+        if (face[f] >= 0) {
+            behind[input->boundary.cell[2 * face[f]]] = true;
+        }
     }
-    return modulus;
+    *modulus = 0.0;
+    for (int64_t q = 0; q < input->point_count; q++) {
+        if (behind[input->point_cell[q]]) {
+            const struct material *material = &input->materials.items[input->materials.of_point[q]];
+            *modulus =
+                fmax(*modulus, fmin(factor * material->shear_modulus, material_wave_modulus(material)));
+        }
+    }
+    return STATUS_OK;
 }
 
 void assembly_nodal_field(const struct assembly *input, const double *u, double *field)

@@ -150,9 +150,10 @@ bool assembly_holds_averages(const struct assembly *input);
 MUST_CHECK enum status assembly_held_faces(const struct assembly *input, int least, bool **held,
                                            struct error *error);
 
-/* The modulus of penalties, Pa: the P-wave modulus, but at most `factor` times the shear modulus, so that it
- * does not grow with the bulk modulus; the largest value of the body's materials. */
-double assembly_penalty_modulus(const struct solid_system *system, double factor);
+/* The modulus of penalties on facets, Pa: the P-wave modulus, but at most `factor` times the shear modulus,
+ * so that it does not grow with the bulk modulus; the largest value in the cells behind the facets. */
+MUST_CHECK enum status assembly_penalty_modulus(const struct assembly *input, const struct facet_set *set,
+                                                double factor, double *modulus, struct error *error);
 
 /* field[node_count * dim] = u_h at the nodes. */
 void assembly_nodal_field(const struct assembly *input, const double *u, double *field);

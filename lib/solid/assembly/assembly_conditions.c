@@ -162,7 +162,7 @@ static enum status add_penalties(struct prescription *p, struct error *error)
     area /= (double)set->count;
     p->penalties = true;
     p->layer = p->input->cells.dim == 2 ? area : sqrt(2.0 * area);
-    p->modulus = assembly_penalty_modulus(p->system, constraint_penalty_factor);
+    TRY(assembly_penalty_modulus(p->input, set, constraint_penalty_factor, &p->modulus, error));
     for (int64_t a = 0; a < points.count; a++) {
         TRY(add_average(p, &points, a, error));
     }

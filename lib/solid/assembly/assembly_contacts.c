@@ -130,6 +130,23 @@ static enum status add_between(const struct assembly *input, const struct contac
     return STATUS_OK;
 }
 
+/* The stiffness of a layer of cells: by the P-wave modulus of the softer side, but at most penalty_factor
+ * times the shear modulus of the stiffer one. */
+static enum status set_stiffness(const struct assembly *input, const struct contact_condition *condition,
+                                 double share, struct contact *contact, struct error *error)
+{
+    double modulus, wave, least = INFINITY, largest = 0.0;
+    const struct facet_set *sides[] = {&condition->facets, &condition->opposite};
+    for (int i = 0; i < (condition->opposite.count > 0 ? 2 : 1); i++) {
+        RETURN_IF_ERROR(assembly_penalty_modulus(input, sides[i], penalty_factor, &modulus, error));
+        RETURN_IF_ERROR(assembly_penalty_modulus(input, sides[i], INFINITY, &wave, error));
+        largest = fmax(largest, modulus);
+        least = fmin(least, wave);
+    }
+    contact_set_stiffness(contact, share * fmin(least, largest));
+    return STATUS_OK;
+}
+
 static enum status add_contact(const struct assembly *input, int32_t number, struct solid_system *system,
                                struct error *error)
 {
@@ -153,8 +170,7 @@ static enum status add_contact(const struct assembly *input, int32_t number, str
     }
     if (condition->stiffness == 0.0) {
         double share = between && condition->friction == 0.0 ? between_share : points_share;
-        contact_set_stiffness(contact, (averages->count > 0 ? share : 1.0) *
-                                           assembly_penalty_modulus(system, penalty_factor));
+        RETURN_IF_ERROR(set_stiffness(input, condition, averages->count > 0 ? share : 1.0, contact, error));
     }
     contact->section = number;
     if (condition->friction > 0.0) {
