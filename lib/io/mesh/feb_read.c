@@ -1,6 +1,6 @@
 /* Models of FEBio, versions 2.5 to 4.0: the mesh in <Geometry> or <Mesh>. (Format: FEBio User's Manual, "Free
  * format input".) */
-#include "io/mesh/mesh_input.h"
+#include "io/mesh/msh_private.h"
 #include "io/mesh/xml.h"
 
 #include <stdio.h>
@@ -88,12 +88,12 @@ enum { FIRST_OF_SET = 4, END_OF_SET };
 static void add_set(struct feb *f, const char *name)
 {
     struct msh_reader *r = f->r;
-    int64_t *first = input_name(f->r, FIRST_OF_SET, name, strlen(name)),
-            *end = input_name(f->r, END_OF_SET, name, strlen(name));
-    if (r->status == STATUS_OK && *first == 0) {
+    int64_t first = *input_name(f->r, FIRST_OF_SET, name, strlen(name)),
+            end = *input_name(f->r, END_OF_SET, name, strlen(name));
+    if (first == 0) {
         msh_fail(r, "there is no set of nodes '%s' as yet", name);
     }
-    for (int64_t e = r->status == STATUS_OK ? *first - 1 : 0; r->status == STATUS_OK && e < *end; e++) {
+    for (int64_t e = first - 1; r->status == STATUS_OK && e < end; e++) {
         int64_t node = r->corners[r->msh->elements[e].first];
         if (f->copied++ == f->most) {
             msh_fail(r, "the sets have too many members for the size of the file");
@@ -207,12 +207,8 @@ static void end_content(struct feb *f, const char *text, const char *end)
         add_list(f, text, end);
     }
     if (f->content == NODE_SET && f->name[0] != '\0') {
-        int64_t *first = input_name(f->r, FIRST_OF_SET, f->name, strlen(f->name)),
-                *last = input_name(f->r, END_OF_SET, f->name, strlen(f->name));
-        if (f->r->status == STATUS_OK) {
-            *first = f->first + 1;
-            *last = f->r->msh->element_count;
-        }
+        *input_name(f->r, FIRST_OF_SET, f->name, strlen(f->name)) = f->first + 1;
+        *input_name(f->r, END_OF_SET, f->name, strlen(f->name)) = f->r->msh->element_count;
     }
     if (f->is_empty && f->content != NODES) {
         (void)input_group(f->r, f->content == ELEMENTS ? msh_type(f->type).dim : dim[f->content], f->name);

@@ -1,7 +1,7 @@
 /* Decks of Abaqus and CalculiX: shared by inp_read.c, inp_sets.c and inp_groups.c; private to lib/io. */
 #pragma once
 
-#include "io/mesh/mesh_input.h"
+#include "io/mesh/msh_private.h"
 
 /* A set of nodes or elements, or a surface. Names are compared without regard to case; those of an assembly
  * are apart from those of its part. */

@@ -17,7 +17,6 @@ struct msh_group {
     char *name; /* without blanks, commas and quotes; "group_TAG" where the file gives none; unique within its
                    dimension */
     int64_t element_count; /* 0 for a group with a name but no elements */
-    char *written;         /* the name in the file: in `name` blanks, commas and quotes are '_'; NULL: none */
 };
 
 struct msh_node {
@@ -109,8 +108,8 @@ struct mesh_options {
  * one entity all over the boundary get no name. A cell in two groups belongs to the one with the lowest tag;
  * a repeated cell counts once; cells in no group are the region 'body' if there is no other region, else
  * 'unnamed'. STATUS_INPUT for no cells, a surface in space, cells without volume or overlapping cells,
- * coincident nodes of one body but on facets with a group, an unknown region, and two node sets with one name. On failure *mesh is
- * empty. */
+ * coincident nodes of one body but on facets with a group, an unknown region, and two node sets with one
+ * name. On failure *mesh is empty. */
 MUST_CHECK enum status mesh_build(struct mesh *mesh, const struct msh *msh,
                                   const struct mesh_options *options, struct error *error);
 void mesh_free(struct mesh *mesh);

@@ -1,9 +1,314 @@
+/* The mesh of a file: its nodes, its cells as simplices, and all of it in a stream. */
 #include "io/mesh/msh_build.h"
 
+#include "base/box.h"
+#include "base/lists.h"
 #include "base/memory.h"
+#include "base/round_off.h"
+#include "base/sets.h"
+#include "base/vector.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* ---- splitting elements ---- */
+
+enum { QUADRANGLE = 3 };
+
+const int8_t msh_face_corners[8][6][4] = {
+    [2] = {{0, 1, -1, -1}, {1, 2, -1, -1}, {2, 0, -1, -1}},
+    [3] = {{0, 1, -1, -1}, {1, 2, -1, -1}, {2, 3, -1, -1}, {3, 0, -1, -1}},
+    [4] = {{0, 1, 2, -1}, {0, 3, 1, -1}, {1, 3, 2, -1}, {2, 3, 0, -1}},
+    [5] = {{0, 1, 2, 3}, {4, 7, 6, 5}, {0, 4, 5, 1}, {1, 5, 6, 2}, {2, 6, 7, 3}, {3, 7, 4, 0}},
+    [6] = {{0, 1, 2, -1}, {3, 5, 4, -1}, {0, 3, 4, 1}, {1, 4, 5, 2}, {2, 5, 3, 0}},
+    [7] = {{0, 1, 2, 3}, {0, 4, 1, -1}, {1, 4, 2, -1}, {2, 4, 3, -1}, {3, 4, 0, -1}},
+};
+
+static int lowest(const int32_t node[], int count)
+{
+    int low = 0;
+    for (int i = 1; i < count; i++) {
+        low = node[i] < node[low] ? i : low;
+    }
+    return low;
+}
+
+static int split_quadrangle(const int32_t ring[4], bool other, int32_t triangles[][4])
+{
+    int low = lowest(ring, 4) + other;
+    int32_t a = ring[low % 4];
+    int32_t c = ring[(low + 2) % 4];
+    memcpy(triangles[0], (int32_t[4]){a, ring[(low + 1) % 4], c, -1}, sizeof triangles[0]);
+    memcpy(triangles[1], (int32_t[4]){a, c, ring[(low + 3) % 4], -1}, sizeof triangles[1]);
+    return 2;
+}
+
+/* Join the lowest node to the triangles of the faces without it. The faces with it are thus split along the
+ * diagonals through it. */
+static int split_solid(int type, const int32_t node[], int32_t tetrahedra[][4])
+{
+    const int8_t(*faces)[4] = msh_face_corners[type];
+    int32_t apex = node[lowest(node, msh_type(type).node_count)];
+    int count = 0;
+    for (int f = 0; f < 6 && faces[f][0] != faces[f][1]; f++) {
+        int32_t ring[4];
+        bool touches = false;
+        int corners = faces[f][3] < 0 ? 3 : 4;
+        for (int k = 0; k < corners; k++) {
+            ring[k] = node[faces[f][k]];
+            touches = touches || ring[k] == apex;
+        }
+        if (touches) {
+            continue;
+        }
+        int added = 1;
+        if (corners == 4) {
+            added = split_quadrangle(ring, false, tetrahedra + count);
+        } else {
+            memcpy(tetrahedra[count], ring, 3 * sizeof *ring);
+        }
+        for (int end = count + added; count < end; count++) {
+            tetrahedra[count][3] = apex;
+        }
+    }
+    return count;
+}
+
+/* Split an element of first order, with these nodes in gmsh's order, into simplices of its dimension,
+ * simplices[i][0 .. dim], of any orientation. Returns their number. A quadrangle, and each quadrangular face,
+ * is split along the diagonal through its lowest node; with `other`, a quadrangle is split along the other
+ * diagonal (for meshes in the plane, whose cells share no quadrangles). */
+static int split(int type, const int32_t node[], bool other, int32_t simplices[MSH_MOST_SIMPLICES][4])
+{
+    if (type == QUADRANGLE) {
+        return split_quadrangle(node, other, simplices);
+    }
+    if (msh_type(type).node_count > 4) {
+        return split_solid(type, node, simplices);
+    }
+    memcpy(simplices[0], node, (size_t)msh_type(type).node_count * sizeof node[0]);
+    return 1;
+}
+
+/* ---- nodes and cells ---- */
+
+/* Number the nodes of kept cells in the order of the file, and copy their coordinates. */
+static enum status build_nodes(struct mesh_draft *draft)
+{
+    enum { LOST = -1, IN_CELL = -2, KEPT = -3 };
+    const struct msh *msh = draft->msh;
+    struct mesh *mesh = draft->mesh;
+    int64_t lost = 0;
+    RETURN_IF_ERROR(NEW_ARRAY(&draft->node_of, msh->node_count, draft->error));
+    for (int64_t n = 0; n < msh->node_count; n++) {
+        draft->node_of[n] = LOST;
+    }
+    for (int64_t e = 0; e < msh->element_count; e++) {
+        int used = mesh_element_dim(draft, e) == mesh->dim ? mesh_corners(draft, e) : 0;
+        for (int k = 0; k < used; k++) {
+            int32_t *node = &draft->node_of[msh->node_idx[msh->elements[e].first + k]];
+            *node = draft->region_of[e] >= 0 || *node == KEPT ? KEPT : IN_CELL;
+        }
+    }
+    for (int64_t n = 0; n < msh->node_count; n++) {
+        lost += draft->node_of[n] == LOST;
+        draft->node_of[n] = draft->node_of[n] == KEPT ? (int32_t)mesh->node_count++ : -1;
+    }
+    if (lost > 0) {
+        RETURN_IF_ERROR(
+            mesh_add_note(draft, "midside nodes, and nodes of no cell, left out: %lld", (long long)lost));
+    }
+    RETURN_IF_ERROR(NEW_ARRAY(&mesh->x, mesh->node_count * mesh->dim, draft->error));
+    for (int64_t n = 0; n < msh->node_count; n++) {
+        for (int i = 0; i < mesh->dim && draft->node_of[n] >= 0; i++) {
+            mesh->x[draft->node_of[n] * mesh->dim + i] = draft->options->unit * msh->nodes[n].x[i];
+        }
+    }
+    return STATUS_OK;
+}
+
+/* Twice the area or six times the volume of a simplex, signed, over the square or cube of its longest edge.
+ */
+static double relative_volume(const struct mesh *mesh, const int32_t cell[])
+{
+    int dim = mesh->dim;
+    double edge[3][3] = {{0}};
+    double longest = 0;
+    for (int i = 0; i <= dim; i++) {
+        for (int j = i + 1; j <= dim; j++) {
+            const double *from = mesh->x + (int64_t)cell[i] * dim, *to = mesh->x + (int64_t)cell[j] * dim;
+            longest = fmax(longest, vector_distance(dim, to, from));
+            if (i == 0) {
+                vector_subtract(dim, to, from, edge[j - 1]);
+            }
+        }
+    }
+    if (!(longest > 0)) {
+        return 0;
+    }
+    for (int i = 0; i < 9; i++) {
+        edge[i / 3][i % 3] /= longest;
+    }
+    return dim == 2 ? determinant2(edge[0], edge[1]) : determinant3(edge[0], edge[1], edge[2]);
+}
+
+int mesh_simplices(const struct mesh_draft *draft, int64_t element, int32_t simplices[MSH_MOST_SIMPLICES][4])
+{
+    const struct msh_element *whole = &draft->msh->elements[element];
+    int type = msh_type(whole->type).linear;
+    int32_t node[8];
+    for (int k = 0; k < mesh_corners(draft, element); k++) {
+        node[k] = draft->node_of[draft->msh->node_idx[whole->first + k]];
+    }
+    int count = split(type, node, false, simplices);
+    if (draft->mesh->dim == 2 && count == 2 &&
+        relative_volume(draft->mesh, simplices[0]) * relative_volume(draft->mesh, simplices[1]) <= 0) {
+        count = split(type, node, true, simplices); /* not convex: use the other diagonal */
+    }
+    return count;
+}
+
+static enum status add_cell(struct mesh_draft *draft, int64_t element, int32_t region,
+                            const int32_t simplex[])
+{
+    struct mesh *mesh = draft->mesh;
+    int64_t at = mesh->cell_count;
+    int32_t *cell = &mesh->cells[at * (mesh->dim + 1)];
+    memcpy(cell, simplex, (size_t)(mesh->dim + 1) * sizeof *cell);
+    double volume = relative_volume(mesh, cell);
+    if (!(fabs(volume) > ROUND_OFF)) {
+        return fail(draft->error, STATUS_INPUT, "element %lld has no %s (its relative size is %.3g)",
+                    (long long)draft->msh->elements[element].tag, mesh->dim == 2 ? "area" : "volume",
+                    fabs(volume));
+    }
+    if (volume < 0) {
+        cell[0] = simplex[1];
+        cell[1] = simplex[0];
+    }
+    mesh->cell_region[at] = region;
+    draft->origin[at] = element;
+    mesh->cell_count++;
+    return STATUS_OK;
+}
+
+/* Split the kept cells into simplices with positive orientation. */
+static enum status build_cells(struct mesh_draft *draft)
+{
+    const struct msh *msh = draft->msh;
+    struct mesh *mesh = draft->mesh;
+    int32_t simplices[MSH_MOST_SIMPLICES][4];
+    int64_t count = 0;
+    for (int64_t e = 0; e < msh->element_count; e++) {
+        count += draft->region_of[e] >= 0 ? mesh_simplices(draft, e, simplices) : 0;
+    }
+    if (count > INT32_MAX) {
+        return fail(draft->error, STATUS_INPUT, "%lld cells are more than %d", (long long)count, INT32_MAX);
+    }
+    RETURN_IF_ERROR(NEW_ARRAY(&mesh->cells, count * (mesh->dim + 1), draft->error));
+    RETURN_IF_ERROR(NEW_ARRAY(&mesh->cell_region, count, draft->error));
+    RETURN_IF_ERROR(NEW_ARRAY(&draft->origin, count, draft->error));
+    for (int64_t e = 0; e < msh->element_count; e++) {
+        int pieces = draft->region_of[e] >= 0 ? mesh_simplices(draft, e, simplices) : 0;
+        for (int i = 0; i < pieces; i++) {
+            RETURN_IF_ERROR(add_cell(draft, e, draft->region_of[e], simplices[i]));
+        }
+    }
+    return STATUS_OK;
+}
+
+/* ---- nodes at one place ---- */
+
+static enum status fail_coincident(const struct mesh_draft *draft, int32_t a, int32_t b)
+{
+    int64_t tags[2] = {0, 0};
+    for (int64_t n = 0; n < draft->msh->node_count; n++) {
+        if (draft->node_of[n] == a || draft->node_of[n] == b) {
+            tags[draft->node_of[n] == (a > b ? a : b)] = draft->msh->nodes[n].tag;
+        }
+    }
+    return fail(
+        draft->error, STATUS_INPUT,
+        "nodes %lld and %lld are at the same place, in one body: merge them (Coherence Mesh), or name "
+        "the facets of a slit",
+        (long long)tags[0], (long long)tags[1]);
+}
+
+/* slit[node_count]: whether a node is on a facet that has a group. */
+static void mark_slits(const struct mesh_draft *draft, bool *slit)
+{
+    const struct msh *msh = draft->msh;
+    for (int64_t e = 0; e < msh->element_count; e++) {
+        bool is_named = msh->elements[e].group >= 0 && mesh_element_dim(draft, e) == draft->mesh->dim - 1;
+        for (int k = 0; is_named && k < mesh_corners(draft, e); k++) {
+            int32_t node = draft->node_of[msh->node_idx[msh->elements[e].first + k]];
+            if (node >= 0) {
+                slit[node] = true;
+            }
+        }
+    }
+}
+
+/* Two nodes of the mesh within ROUND_OFF of its extent are an error if cells connect them, unless one is on a
+ * facet that has a group: of a slit; else two bodies touch. Both are noted. They coincide in any projection:
+ * sort them along a direction with which no lattice is aligned, and compare those that are near along it. */
+static enum status check_coincident(struct mesh_draft *draft)
+{
+    static const double direction[3] = {0.7548776662466927, 0.5698402909980532, 0.3247179572447460};
+    const struct mesh *mesh = draft->mesh;
+    struct box box = box_of(mesh->dim, mesh->node_count, mesh->x);
+    double tolerance = ROUND_OFF * box_side(&box);
+    SCRATCH struct placed *order = NULL;
+    SCRATCH int32_t *body = NULL;
+    SCRATCH bool *slit = NULL;
+    int64_t touching = 0, doubled = 0;
+    RETURN_IF_ERROR(NEW_ARRAY(&body, mesh->node_count, draft->error));
+    set_join_cells(mesh->node_count, mesh->cell_count, mesh->dim + 1, mesh->cells, body);
+    RETURN_IF_ERROR(NEW_ARRAY(&slit, mesh->node_count, draft->error));
+    mark_slits(draft, slit);
+    RETURN_IF_ERROR(NEW_ARRAY(&order, mesh->node_count, draft->error));
+    for (int64_t n = 0; n < mesh->node_count; n++) {
+        order[n].item = n;
+        for (int k = 0; k < mesh->dim; k++) {
+            order[n].place += direction[k] * (mesh->x[n * mesh->dim + k] - box.low[k]);
+        }
+    }
+    qsort(order, (size_t)mesh->node_count, sizeof *order, compare_placed);
+    for (int64_t i = 0; i < mesh->node_count; i++) {
+        for (int64_t j = i + 1; j < mesh->node_count && order[j].place - order[i].place <= 2 * tolerance;
+             j++) {
+            int32_t a = (int32_t)order[i].item, b = (int32_t)order[j].item;
+            double farthest = 0;
+            for (int k = 0; k < mesh->dim; k++) {
+                farthest = fmax(farthest, fabs(mesh->x[a * mesh->dim + k] - mesh->x[b * mesh->dim + k]));
+            }
+            if (farthest <= tolerance && set_first(body, a) != set_first(body, b)) {
+                touching++;
+            } else if (farthest <= tolerance && (slit[a] || slit[b])) {
+                doubled++;
+            } else if (farthest <= tolerance) {
+                RETURN_IF_ERROR(fail_coincident(draft, a, b));
+            }
+        }
+    }
+    if (doubled > 0) {
+        RETURN_IF_ERROR(
+            mesh_add_note(draft,
+                          "nodes at the same place, on named facets of one body: %lld pairs: it has "
+                          "a slit there",
+                          (long long)doubled));
+    }
+    if (touching > 0) {
+        RETURN_IF_ERROR(mesh_add_note(
+            draft,
+            "nodes at the same place, of different bodies: %lld pairs: the bodies are not joined "
+            "there (Coherence Mesh in gmsh joins them)",
+            (long long)touching));
+    }
+    return STATUS_OK;
+}
+
+/* ---- all of it ---- */
 
 enum status mesh_build(struct mesh *mesh, const struct msh *msh, const struct mesh_options *options,
                        struct error *error)
@@ -16,9 +321,9 @@ enum status mesh_build(struct mesh *mesh, const struct msh *msh, const struct me
     }
     TRY(mesh_find_dim(&draft));
     TRY(mesh_pick_regions(&draft));
-    TRY(mesh_build_nodes(&draft));
-    TRY(mesh_build_cells(&draft));
-    TRY(mesh_check_coincident(&draft));
+    TRY(build_nodes(&draft));
+    TRY(build_cells(&draft));
+    TRY(check_coincident(&draft));
     TRY(mesh_build_facets(&draft));
 done:
     FREE_ALL(draft.region_of, draft.node_of, draft.origin);

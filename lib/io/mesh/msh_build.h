@@ -34,23 +34,5 @@ int mesh_simplices(const struct mesh_draft *draft, int64_t element, int32_t simp
 MUST_CHECK enum status mesh_find_dim(struct mesh_draft *draft);
 MUST_CHECK enum status mesh_pick_regions(struct mesh_draft *draft);
 
-/* Number the nodes of kept cells in the order of the file, and copy their coordinates; split these cells into
- * simplices with positive orientation. */
-MUST_CHECK enum status mesh_build_nodes(struct mesh_draft *draft);
-MUST_CHECK enum status mesh_build_cells(struct mesh_draft *draft);
-
-/* Two nodes of the mesh within 1e-12 of its extent are an error if cells connect them, unless one is on a facet
- * that has a group: of a slit; else two bodies touch. Both are noted. */
-MUST_CHECK enum status mesh_check_coincident(struct mesh_draft *draft);
-
 /* Make facets and node sets from the elements of lower dimension. */
 MUST_CHECK enum status mesh_build_facets(struct mesh_draft *draft);
-
-/* ---- msh_split.c: splitting elements into simplices, so that elements with a common face split it in the
- * same way ---- */
-
-/* Split an element of first order, with these nodes in gmsh's order, into simplices of its dimension,
- * simplices[i][0 .. dim], of any orientation. Returns their number. A quadrangle, and each quadrangular face,
- * is split along the diagonal through its lowest node; with `other`, a quadrangle is split along the other
- * diagonal (for meshes in the plane, whose cells share no quadrangles). */
-int msh_split(int type, const int32_t node[], bool other, int32_t simplices[MSH_MOST_SIMPLICES][4]);

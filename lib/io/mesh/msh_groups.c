@@ -1,7 +1,7 @@
 /* The groups of a mesh file, and that of each element, from the names, entities and elements that were read.
  * They are the physical groups; where cells, or faces of cells, have none, the entities of the geometry. */
 #include "base/lists.h"
-#include "io/mesh/mesh_input.h"
+#include "io/mesh/msh_private.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -97,9 +97,8 @@ static void give_name(struct msh_reader *r, const struct msh_name *name)
                          group->tag, group->dim);
         return;
     }
-    group->written = strndup(name->text, (size_t)name->length);
     group->name = strndup(name->text, (size_t)name->length);
-    if (group->name == NULL || group->written == NULL) {
+    if (group->name == NULL) {
         r->status = fail_memory(r->error, "the name of a group");
         return;
     }
@@ -122,11 +121,11 @@ static void append_tag(struct msh_reader *r, struct msh_group *group, const char
     group->name = numbered;
 }
 
-/* Note that a group has its name; returns how many of its dimension have it so far, for the caller to change.
- */
+/* How many groups of its dimension have the name of a group, for the caller to change. */
 static int64_t *uses_of(struct msh_reader *r, const struct msh_group *group)
 {
-    return input_name(r, OF_DIMENSION + group->dim, group->name, strlen(group->name));
+    return input_name(r, OF_DIMENSION + group->dim, group->name,
+                      r->status == STATUS_OK ? strlen(group->name) : 0);
 }
 
 /* Name the groups as in the file, or "group_TAG"; tags tell those of one name apart. */
@@ -134,7 +133,6 @@ static void name_groups(struct msh_reader *r)
 {
     struct msh_group *groups = r->msh->groups;
     int32_t count = r->msh->group_count;
-    int64_t *uses;
     for (int64_t i = 0; r->status == STATUS_OK && i < r->name_count; i++) {
         give_name(r, &r->names[i]);
     }
@@ -142,18 +140,20 @@ static void name_groups(struct msh_reader *r)
         if (groups[i].name == NULL) {
             append_tag(r, &groups[i], "group");
         }
-        uses = r->status == STATUS_OK ? uses_of(r, &groups[i]) : NULL;
-        *(uses != NULL ? uses : &(int64_t){0}) += 1;
+        ++*uses_of(r, &groups[i]);
     }
-    for (int32_t i = 0; r->status == STATUS_OK && i < count;) {
-        uses = uses_of(r, &groups[i]);
-        if (uses == NULL || *uses < 2) {
-            i++;
-            continue;
+    for (int32_t i = 0; r->status == STATUS_OK && i < count; i++) {
+        while (*uses_of(r, &groups[i]) > 1 && r->status == STATUS_OK) {
+            append_tag(r, &groups[i], groups[i].name);
+            ++*uses_of(r, &groups[i]);
         }
-        append_tag(r, &groups[i], groups[i].name);
-        uses = r->status == STATUS_OK ? uses_of(r, &groups[i]) : NULL;
-        *(uses != NULL ? uses : &(int64_t){0}) += 1;
+    }
+    for (int64_t i = 0; r->status == STATUS_OK && i < r->name_count; i++) {
+        const struct msh_name *name = &r->names[i];
+        const char *here = find_group(r->msh, name->key)->name;
+        if (strlen(here) != (size_t)name->length || memcmp(here, name->text, strlen(here)) != 0) {
+            input_note(r, "group '%.*s' is named '%s' here", name->length, name->text, here);
+        }
     }
 }
 

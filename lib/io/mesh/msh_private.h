@@ -3,7 +3,7 @@
  *   $PhysicalNames, $Entities \
  *   $Nodes                     } msh_list.c --> msh_groups.c --> struct msh
  *   $Elements                 /
- *   inp_read.c, feb_read.c, vtu_read.c, vtk_read.c (mesh_input.h) as well
+ *   inp_read.c, feb_read.c, vtu_read.c, vtk_read.c as well
  *
  * A reader passes through the file once, and adds nodes, elements and groups to lists. After its first
  * failure, every function of this header returns without effect, numbers are the least admitted ones, and
@@ -17,6 +17,9 @@
 
 #include <stdbool.h>
 #include <stdint.h>
+
+/* Most bytes of the name of a group. */
+#define INPUT_NAME 127
 
 /* Tags are of type int in MSH 2; in MSH 4 gmsh keeps most of them as int. */
 #define MSH_LARGEST_TAG INT32_MAX
@@ -75,12 +78,13 @@ struct msh_reader {
     struct msh_name *names;
     struct owned texts; /* those of names that are not in the file */
     void *numbered;     /* a tree of what input_name numbers */
+    int64_t no_number;  /* what it gives after a failure */
     char left_out[320]; /* what is not read, ", " before each */
     int64_t entity_count, entity_room;
     struct msh_entity *entities; /* ascending in (key, group) */
 };
 
-/* ---- msh_number.c: numbers, text or binary alike ---- */
+/* ---- mesh_input.c: numbers, text or binary alike ---- */
 
 /* Fail with "$Nodes: node 12: message", unless the reader has failed before. */
 void msh_fail(struct msh_reader *reader, const char *format, ...) __attribute__((format(printf, 2, 3)));
@@ -122,23 +126,17 @@ void msh_skip_line(struct msh_reader *reader);
         }                                                                                                    \
     } while (0)
 
-/* ---- the sections, from the line behind "$Name" to where "$EndName" should be ---- */
+/* ---- msh_sections.c: the sections, from the line behind "$Name" to where "$EndName" should be ---- */
 
-void msh_read_names(struct msh_reader *reader); /* msh_entities.c */
+void msh_read_names(struct msh_reader *reader);
 void msh_read_entities(struct msh_reader *reader);
-void msh_read_nodes(struct msh_reader *reader);    /* msh_nodes.c */
-void msh_read_elements(struct msh_reader *reader); /* msh_elements.c */
+void msh_read_nodes(struct msh_reader *reader);
+void msh_read_elements(struct msh_reader *reader);
 
-/* ---- msh_entities.c, msh_groups.c: entities and groups ---- */
+/* ---- entities and groups ---- */
 
 /* "point", "curve", "surface" or "volume". */
 const char *msh_entity_kind(int dim);
-
-/* Dimension and tag of the entity at the head of a block of nodes or elements in MSH 4. */
-int64_t msh_read_entity_tag(struct msh_reader *reader, int64_t *dim);
-
-/* The groups of an entity, *count of them; NULL: it is not in the file. */
-const struct msh_entity *msh_find_entity(const struct msh_reader *reader, int64_t key, int64_t *count);
 
 /* Dimension and tag as one number, ascending in (dimension, tag); never 0. */
 static inline int64_t msh_key(int64_t dim, int64_t tag)
@@ -172,3 +170,64 @@ int64_t msh_index_from(struct msh_index *index, int64_t tag);
 
 /* Find the nodes of all elements, and give tags to those without: before the groups are set. */
 void msh_finish_lists(struct msh_reader *reader);
+
+/* ---- mesh_input.c: what readers of meshes share that are not gmsh's ---- */
+
+/* Corners of the faces S1, S2, ... that decks of Abaqus count in elements of first order, by gmsh's number;
+ * -1 fills up, 0 behind the last face. (msh_build.c) */
+extern const int8_t msh_face_corners[8][6][4];
+
+/* gmsh's number of a point. */
+#define INPUT_POINT 15
+
+/* Say where the reader is, for messages: "*NODE: line 12: ..." */
+static inline void input_at(struct msh_reader *r, const char *section, int64_t line)
+{
+    r->section = section;
+    r->kind = "line";
+    r->record = line;
+}
+
+/* The numbers that words of a text file are: all of the word; a real number is finite, and may have Fortran's
+ * exponent D. */
+int64_t input_whole(struct msh_reader *r, const char *what, const char *word, int64_t length, int64_t least,
+                    int64_t most);
+int64_t input_within(struct msh_reader *r, const char *what, int64_t number, int64_t least, int64_t most);
+double input_real(struct msh_reader *r, const char *what, const char *word, int64_t length);
+
+/* The number of gmsh of the elements of first or second order with this dimension and number of nodes; 0:
+ * there are none. Numbers of nodes are those of one type, except that 8 in the plane are of second order. */
+int input_type(int dim, int node_count);
+
+static inline bool input_is_blank(char c)
+{
+    return c == ' ' || c == '\n' || c == '\r' || c == '\t';
+}
+
+/* The next word of a text, between blanks, line ends and `comma`, at *at, which moves behind it; NULL: the
+ * end. */
+const char *input_word(const char **at, const char *end, char comma, int64_t *length);
+
+/* The number of a name of 1 to INPUT_NAME bytes among those of a kind, for the caller: 0 at first. */
+int64_t *input_name(struct msh_reader *r, int kind, const char *text, size_t length);
+
+/* The key of a new group; of the group of that dimension and name, which may be new. */
+int64_t input_add_group(struct msh_reader *r, int dim, const char *text, int64_t length);
+int64_t input_group(struct msh_reader *r, int dim, const char *text);
+
+/* Note what of the file is left out, each thing once. */
+void input_leave_out(struct msh_reader *r, const char *what);
+
+/* Append a note, printed; a statement. */
+#define input_note(r, ...)                                                                                   \
+    do {                                                                                                     \
+        if ((r)->status == STATUS_OK) {                                                                      \
+            (r)->status = names_print(&(r)->msh->notes, (r)->error, __VA_ARGS__);                            \
+        }                                                                                                    \
+    } while (0)
+
+/* Read a deck of Abaqus or CalculiX; a model of FEBio; a file of VTK, in XML or legacy. */
+void inp_read(struct msh_reader *r);
+void feb_read(struct msh_reader *r);
+void vtu_read(struct msh_reader *r);
+void vtk_read(struct msh_reader *r);

@@ -1,6 +1,6 @@
 #include "base/memory.h"
 #include "io/files/descriptor.h"
-#include "io/mesh/mesh_input.h"
+#include "io/mesh/msh_private.h"
 
 #include <ctype.h>
 #include <search.h>
@@ -283,7 +283,7 @@ void msh_free(struct msh *msh)
 {
     FREE_ALL(msh->nodes, msh->elements, msh->node_idx);
     for (int32_t i = 0; i < msh->group_count; i++) {
-        FREE_ALL(msh->groups[i].name, msh->groups[i].written);
+        free(msh->groups[i].name);
     }
     free(msh->groups);
     names_free(&msh->notes);

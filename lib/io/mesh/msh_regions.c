@@ -1,10 +1,10 @@
+#include "base/box.h"
 #include "base/keyed.h"
 #include "base/lists.h"
 #include "base/memory.h"
 #include "base/round_off.h"
 #include "io/mesh/msh_build.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -21,20 +21,16 @@ int mesh_corners(const struct mesh_draft *draft, int64_t element)
 static enum status check_plane(const struct mesh_draft *draft)
 {
     const struct msh *msh = draft->msh;
-    double least[3] = {INFINITY, INFINITY, INFINITY};
-    double most[3] = {-INFINITY, -INFINITY, -INFINITY};
+    struct box box = box_of(3, 0, NULL);
     for (int64_t e = 0; e < msh->element_count; e++) {
         int count = mesh_element_dim(draft, e) == 2 ? mesh_corners(draft, e) : 0;
         for (int k = 0; k < count; k++) {
-            for (int i = 0; i < 3; i++) {
-                double x = msh->nodes[msh->node_idx[msh->elements[e].first + k]].x[i];
-                least[i] = fmin(least[i], x);
-                most[i] = fmax(most[i], x);
-            }
+            box_add(&box, 1, msh->nodes[msh->node_idx[msh->elements[e].first + k]].x);
         }
     }
-    double extent = fmax(most[0] - least[0], most[1] - least[1]);
-    if (!(most[2] - least[2] <= COARSE_ROUND_OFF * extent)) {
+    double across = box.high[2] - box.low[2];
+    box.dim = 2;
+    if (!(across <= COARSE_ROUND_OFF * box_side(&box))) {
         return fail(
             draft->error, STATUS_INPUT,
             "a surface in space, without volume cells: mesh the volume (gmsh -3), or a plane z = const");
@@ -114,19 +110,6 @@ static enum status find_cells(struct mesh_draft *draft, bool is_cell[])
                                       (long long)again);
 }
 
-/* Note each name that differs from that in the file. */
-static enum status note_names(struct mesh_draft *draft)
-{
-    for (int32_t g = 0; g < draft->msh->group_count; g++) {
-        const struct msh_group *group = &draft->msh->groups[g];
-        if (group->written != NULL && strcmp(group->written, group->name) != 0) {
-            RETURN_IF_ERROR(
-                mesh_add_note(draft, "group '%s' is named '%s' here", group->written, group->name));
-        }
-    }
-    return STATUS_OK;
-}
-
 /* Check that every wanted region exists. */
 static enum status check_wanted(const struct mesh_draft *draft, const struct names *wanted,
                                 const struct names *present)
@@ -186,7 +169,6 @@ enum status mesh_pick_regions(struct mesh_draft *draft)
     RETURN_IF_ERROR(NEW_ARRAY(&cells_of, msh->group_count + 1, draft->error));
     RETURN_IF_ERROR(NEW_ARRAY(&is_cell, msh->element_count, draft->error));
     RETURN_IF_ERROR(NEW_ARRAY(&draft->region_of, msh->element_count, draft->error));
-    RETURN_IF_ERROR(note_names(draft));
     RETURN_IF_ERROR(find_cells(draft, is_cell));
     for (int64_t e = 0; e < msh->element_count; e++) {
         cells_of[cell_group(msh, e)] += is_cell[e];
