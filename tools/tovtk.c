@@ -48,40 +48,37 @@ static const char usage[] =
 #include <string.h>
 
 /* Write one frame as a vtu file; NULL: to standard output. */
-static enum status write_vtu(const struct tool *tool, struct plot *plot, int64_t frame, const char *name,
-                             struct error *error)
+static void write_vtu(const struct tool *tool, struct plot *plot, int64_t frame, const char *name)
 {
     struct output output;
-    plot_choose(plot, frame);
-    RETURN_IF_ERROR(output_open(&output, name, false, error));
-    return output_end(&output,
-                      vtu_write(output.file, &plot->mesh, plot->field_count, plot->fields, tool->text, error),
-                      error);
+    TOOL_TRY(tool, plot_choose(plot, frame, &error));
+    tool_print_to(tool, &output, name);
+    vtu_write(output.file, &plot->mesh, plot->field_count, plot->fields, tool->text);
+    tool_printed(tool, &output);
 }
 
 /* Write NAME-0001.vtu, ... and then NAME.pvd, which lists them. */
 static void write_series(const struct tool *tool, struct plot *plot)
 {
     struct output output;
-    int64_t count = plot_state_count(plot);
+    int64_t count = plot->frame_count > 0 ? plot->frame_count : 1;
     size_t stem = strlen(tool->output) - strlen(".pvd");
     const char *slash = strrchr(tool->output, '/');
     size_t folder = slash != NULL ? (size_t)(slash - tool->output) + 1 : 0;
     TOOL_SCRATCH(tool, char *, paths, count);
     TOOL_SCRATCH(tool, char *, names, count); /* relative to the .pvd file: the ends of the paths */
     TOOL_SCRATCH(tool, double, times, count);
-    struct error error;
     for (int64_t i = 0; i < count; i++) {
-        int64_t frame = plot_frame(plot, i);
-        tool_check(tool, plot_time(plot, frame, &times[i], &error), &error);
+        int64_t frame = plot->frame_count > 0 ? plot->frames[i] : FRAME_NONE;
+        TOOL_TRY(tool, plot_time(plot, frame, &times[i], &error));
         paths[i] = tool_text(tool, "%.*s-%04lld.vtu", (int)stem, tool->output,
                              frame == FRAME_NONE ? 0LL : (long long)frame);
-        tool_check(tool, write_vtu(tool, plot, frame, paths[i], &error), &error);
+        write_vtu(tool, plot, frame, paths[i]);
         names[i] = paths[i] + folder;
     }
     tool_print_to(tool, &output, tool->output);
-    tool_check(tool, output_end(&output, pvd_write(output.file, count, names, times, &error), &error),
-               &error);
+    pvd_write(output.file, count, names, times);
+    tool_printed(tool, &output);
     for (int64_t i = 0; i < count; i++) {
         free(paths[i]);
     }
@@ -100,21 +97,20 @@ static void check_ending(const struct tool *tool)
 int main(int argc, char *argv[])
 {
     struct tool tool;
-    struct error error;
     FREED_BY(plot_free) struct plot plot = {0};
     tool_begin(&tool, usage, 0, 1, argc, argv);
     check_ending(&tool);
     bool is_series = tool.output != NULL && text_ends(tool.output, ".pvd");
     tool_read(&tool, tool.operands[0], &plot.stream);
-    tool_check(&tool, plot_find(&plot, &error), &error);
+    TOOL_TRY(&tool, plot_find(&plot, &error));
     if (is_series) {
         write_series(&tool, &plot);
     } else {
+        write_vtu(&tool, &plot, FRAME_NONE, tool.output);
         if (plot.frame_count > 0) {
             tool_note(&tool, "only the final state is written: name a .pvd file for all %lld frames",
                       (long long)plot.frame_count);
         }
-        tool_check(&tool, write_vtu(&tool, &plot, FRAME_NONE, tool.output, &error), &error);
     }
     return tool_end(&tool);
 }

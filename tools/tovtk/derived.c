@@ -11,36 +11,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-void derived_free(struct derived *derived)
-{
-    for (int64_t i = 0; i < derived->count; i++) {
-        FREE_ALL(derived->items[i].name, derived->items[i].attributes, derived->items[i].data);
-    }
-    free(derived->items);
-    *derived = (struct derived){0};
-}
-
-/* Append a section of zeros, whose name is in two pieces. Its data is in the last item. */
-static enum status append(struct derived *derived, const char *name, const char *tail, enum element_type type,
-                          int64_t rows, int64_t cols, const char *attributes, struct error *error)
-{
-    RETURN_IF_ERROR(RESIZE_ARRAY(&derived->items, derived->count + 1, error));
-    struct section section = {.type = type, .rows = rows, .cols = cols};
-    section.attributes = strdup(attributes);
-    section.data = array_new(rows * cols, element_size(type));
-    section.name = asprintf(&section.name, "%s%s", name, tail) < 0 ? NULL : section.name;
-    derived->items[derived->count++] = section;
-    if (section.attributes == NULL || section.data == NULL || section.name == NULL) {
-        return fail_memory(error, name);
-    }
-    return STATUS_OK;
-}
-
-static void *last_data(const struct derived *derived)
-{
-    return derived->items[derived->count - 1].data;
-}
-
 /* A[9]: row `row` of a symmetric tensor, whose components are in the columns from[6]. */
 static void read_tensor(const struct section *section, const int64_t from[6], int64_t row, double A[9])
 {
@@ -119,80 +89,77 @@ static bool has_section(const struct stream *stream, const char *name, const cha
     return stream_find(stream, full) != NULL;
 }
 
-enum status derived_add_invariants(const struct stream *stream, struct derived *derived, struct error *error)
+static enum status add_invariants(struct stream *stream, int64_t frame, struct error *error)
 {
-    for (int64_t s = 0; s < stream->section_count; s++) {
+    char name[160];
+    int64_t count = stream->section_count;
+    for (int64_t s = 0; s < count; s++) {
         const struct section *section = &stream->sections[s];
         size_t length;
         int64_t from[6];
-        (void)frame_of(section->name, &length);
+        bool wanted = frame_of(section->name, &length) == frame && vtk_tensor(section, from);
         for (size_t i = 0; i < sizeof invariants / sizeof *invariants; i++) {
             const struct invariant *what = &invariants[i];
             const char *tail = section->name + length;
-            if (strlen(what->of) != length || strncmp(section->name, what->of, length) != 0 ||
-                !vtk_tensor(section, from) ||
+            if (!wanted || strlen(what->of) != length || strncmp(section->name, what->of, length) != 0 ||
                 (what->given != NULL && has_section(stream, what->given, tail))) {
                 continue;
             }
-            RETURN_IF_ERROR(append(derived, what->name, tail, TYPE_F8, section->rows, what->cols,
-                                   what->attributes, error));
-            double *values = last_data(derived);
+            NEW_SCRATCH(double, values, section->rows *what->cols, error);
             for (int64_t row = 0; row < section->rows; row++) {
                 double A[9];
                 read_tensor(section, from, row, A);
                 what->compute(A, values + row * what->cols);
             }
+            snprintf(name, sizeof name, "%s%s", what->name, tail);
+            RETURN_IF_ERROR(stream_put(stream, name, TYPE_F8, section->rows, what->cols, what->attributes,
+                                       array_take(&values), true, error));
         }
     }
     return STATUS_OK;
 }
 
-/* Append a section of zeros for each name, behind the prefix. */
-static enum status append_groups(const struct names *names, const char *prefix, int64_t node_count,
-                                 struct derived *derived, struct error *error)
+/* Put a section for each name: 1 at the nodes node[i * per] and following of the items i of its group, 0
+ * elsewhere. */
+static enum status add_groups(struct stream *stream, const char *prefix, const struct names *names,
+                              int64_t node_count, int64_t count, int per, const int32_t *node,
+                              const int32_t *group, struct error *error)
 {
-    for (int64_t i = 0; i < names->count; i++) {
-        RETURN_IF_ERROR(append(derived, prefix, names->name[i], TYPE_I4, node_count, 1, "", error));
+    for (int64_t g = 0; g < names->count; g++) {
+        char name[64];
+        SCRATCH char *label = NULL;
+        NEW_SCRATCH(int32_t, value, node_count, error);
+        for (int64_t i = 0; i < count * per; i++) {
+            value[node[i]] |= group[i / per] == g;
+        }
+        snprintf(name, sizeof name, DERIVED_GROUP "%s%lld", prefix, (long long)g);
+        if (asprintf(&label, "label=%s.%s", prefix, names->name[g]) < 0) {
+            label = NULL;
+            return fail_memory(error, "labels");
+        }
+        RETURN_IF_ERROR(
+            stream_put(stream, name, TYPE_I4, node_count, 1, label, array_take(&value), true, error));
     }
     return STATUS_OK;
 }
 
-static void mark(const struct derived *derived, int64_t item, int32_t node)
-{
-    ((int32_t *)derived->items[item].data)[node] = 1;
-}
-
-static enum status add_facet_groups(const struct stream *stream, const struct cells *cells,
-                                    struct derived *derived, struct error *error)
+enum status derived_add(struct stream *stream, const struct cells *cells, int64_t frame, struct error *error)
 {
     FREED_BY(named_facets_free) struct named_facets facets = {0};
-    int64_t first = derived->count;
-    RETURN_IF_ERROR(stream_facets(stream, false, cells, &facets, error));
-    RETURN_IF_ERROR(append_groups(&facets.names, "facets.", cells->node_count, derived, error));
-    for (int64_t i = 0; i < facets.count * cells->dim; i++) {
-        mark(derived, first + facets.group[i / cells->dim], facets.facet[i]);
-    }
-    return STATUS_OK;
-}
-
-static enum status add_node_sets(const struct stream *stream, const struct cells *cells,
-                                 struct derived *derived, struct error *error)
-{
     FREED_BY(named_sets_free) struct named_sets sets = {0};
-    int64_t first = derived->count;
+    const struct neighbours *lists = &sets.lists;
+    RETURN_IF_ERROR(add_invariants(stream, frame, error));
+    RETURN_IF_ERROR(stream_facets(stream, false, cells, &facets, error));
+    RETURN_IF_ERROR(add_groups(stream, "facets", &facets.names, cells->node_count, facets.count, cells->dim,
+                               facets.facet, facets.group, error));
     RETURN_IF_ERROR(stream_sets(stream, false, cells->node_count, &sets, error));
-    RETURN_IF_ERROR(append_groups(&sets.names, "set.", cells->node_count, derived, error));
-    for (int64_t s = 0; s < sets.lists.count; s++) {
-        for (int64_t i = sets.lists.ptr[s]; i < sets.lists.ptr[s + 1]; i++) {
-            mark(derived, first + s, sets.lists.idx[i]);
+    int64_t count = lists->count > 0 ? lists->ptr[lists->count] : 0;
+    NEW_SCRATCH(int32_t, group, count, error);
+    for (int64_t i = 0, s = 0; i < count; i++) {
+        while (i >= lists->ptr[s + 1]) {
+            s++;
         }
+        group[i] = (int32_t)s;
     }
-    return STATUS_OK;
-}
-
-enum status derived_add_groups(const struct stream *stream, const struct cells *cells,
-                               struct derived *derived, struct error *error)
-{
-    RETURN_IF_ERROR(add_facet_groups(stream, cells, derived, error));
-    return add_node_sets(stream, cells, derived, error);
+    return add_groups(stream, "set", &sets.names, cells->node_count, count, 1, lists->idx, group, error);
 }

@@ -18,7 +18,7 @@ static bool begins_with(const char *text, const char *prefix)
 static bool is_static(const char *name)
 {
     return begins_with(name, "cells.") || begins_with(name, "nodes.") || begins_with(name, "support.") ||
-           begins_with(name, "facets.") || begins_with(name, "set.") || strcmp(name, "points.weight") == 0;
+           begins_with(name, DERIVED_GROUP) || strcmp(name, "points.weight") == 0;
 }
 
 /* Whether the part of a name before its first dot is in a NULL-terminated list. */
@@ -71,7 +71,8 @@ static void choose_field(struct plot *plot, const struct section *section, int64
     int64_t of = frame_of(section->name, &length);
     bool is_wanted = of == frame || (of == FRAME_NONE && is_static(section->name));
     if (is_wanted && is_field(&plot->mesh, section, &field.of_cells)) {
-        field.name = section->name;
+        field.name =
+            begins_with(section->name, DERIVED_GROUP) ? strchr(section->attributes, '=') + 1 : section->name;
         if (of != FRAME_NONE) {
             char *label = plot->labels[plot->field_count];
             snprintf(label, sizeof plot->labels[0], "%.*s", (int)length, section->name);
@@ -81,17 +82,22 @@ static void choose_field(struct plot *plot, const struct section *section, int64
     }
 }
 
-void plot_choose(struct plot *plot, int64_t frame)
+enum status plot_choose(struct plot *plot, int64_t frame, struct error *error)
 {
+    struct stream *stream = &plot->stream;
+    while (stream->section_count > plot->given) {
+        stream_remove(stream, stream->sections[stream->section_count - 1].name);
+    }
+    RETURN_IF_ERROR(derived_add(stream, &plot->cells, frame, error));
+    RETURN_IF_ERROR(RESIZE_ARRAY(&plot->fields, stream->section_count, error));
+    RETURN_IF_ERROR(RESIZE_ARRAY(&plot->labels, stream->section_count, error));
     plot->field_count = 0;
-    for (int64_t s = 0; s < plot->stream.section_count; s++) {
-        if (!is_structure(plot->stream.sections[s].name)) {
-            choose_field(plot, &plot->stream.sections[s], frame);
+    for (int64_t s = 0; s < stream->section_count; s++) {
+        if (!is_structure(stream->sections[s].name)) {
+            choose_field(plot, &stream->sections[s], frame);
         }
     }
-    for (int64_t d = 0; d < plot->derived.count; d++) {
-        choose_field(plot, &plot->derived.items[d], frame);
-    }
+    return STATUS_OK;
 }
 
 static enum status find_frames(struct plot *plot, struct error *error)
@@ -132,46 +138,24 @@ static enum status find_mesh(struct plot *plot, struct error *error)
                                    .node_count = cells->node_count,
                                    .x = cells->x,
                                    .cell_count = cells->count,
-                                   .node = cells->count > 0 ? cells->node : NULL,
-                                   .region_names = ""};
+                                   .node = cells->count > 0 ? cells->node : NULL};
     if (cells->count > 0 && stream_find(&plot->stream, "cells.region") != NULL) {
         RETURN_IF_ERROR(stream_regions(&plot->stream, regions, error));
-        plot->mesh.region_names = regions->names.list;
+        plot->mesh.regions = regions->names;
     }
     return STATUS_OK;
-}
-
-/* Find the fields: those of the stream, derived ones, and the groups. */
-static enum status find_fields(struct plot *plot, struct error *error)
-{
-    RETURN_IF_ERROR(derived_add_invariants(&plot->stream, &plot->derived, error));
-    RETURN_IF_ERROR(derived_add_groups(&plot->stream, &plot->cells, &plot->derived, error));
-    int64_t most = plot->stream.section_count + plot->derived.count;
-    RETURN_IF_ERROR(NEW_ARRAY(&plot->fields, most, error));
-    return NEW_ARRAY(&plot->labels, most, error);
-}
-
-int64_t plot_frame(const struct plot *plot, int64_t i)
-{
-    return plot->frame_count > 0 ? plot->frames[i] : FRAME_NONE;
-}
-
-int64_t plot_state_count(const struct plot *plot)
-{
-    return plot->frame_count > 0 ? plot->frame_count : 1;
 }
 
 enum status plot_find(struct plot *plot, struct error *error)
 {
     RETURN_IF_ERROR(find_mesh(plot, error));
-    RETURN_IF_ERROR(find_frames(plot, error));
-    return find_fields(plot, error);
+    plot->given = plot->stream.section_count;
+    return find_frames(plot, error);
 }
 
 void plot_free(struct plot *plot)
 {
     stream_free(&plot->stream);
-    derived_free(&plot->derived);
     names_free(&plot->regions.names);
     FREE_ALL(plot->fields, plot->labels, plot->frames);
 }

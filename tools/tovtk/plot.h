@@ -7,11 +7,11 @@
 
 struct plot {
     struct stream stream;
-    struct derived derived; /* fields derived from those of the stream */
+    int64_t given; /* of its sections; those behind are fields derived for the frame chosen last */
     struct cells cells;
     struct cell_regions regions;
     struct vtk_mesh mesh;     /* a view of the cells and regions */
-    struct vtk_field *fields; /* of the frame chosen last; room for every section */
+    struct vtk_field *fields; /* of the frame chosen last */
     char (*labels)[128];      /* names of the fields of frames */
     int64_t field_count;
     int64_t *frames; /* the numbers of the frames, ascending */
@@ -25,14 +25,8 @@ MUST_CHECK enum status plot_find(struct plot *plot, struct error *error);
 /* Release everything, including the stream. */
 void plot_free(struct plot *plot);
 
-/* Number of states to write: the frames, or the final state if there are none. */
-int64_t plot_state_count(const struct plot *plot);
-
-/* The number of frame i; FRAME_NONE, the final state, if there are none. */
-int64_t plot_frame(const struct plot *plot, int64_t i);
-
 /* Choose the fields of a frame, or of the final state for FRAME_NONE. */
-void plot_choose(struct plot *plot, int64_t frame);
+MUST_CHECK enum status plot_choose(struct plot *plot, int64_t frame, struct error *error);
 
 /* Attribute time= of the first section of the frame that has one, else its number; 0 for the final state. */
 MUST_CHECK enum status plot_time(const struct plot *plot, int64_t frame, double *time, struct error *error);

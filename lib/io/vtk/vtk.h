@@ -1,7 +1,7 @@
 /* Writing node clouds with cells and fields for ParaView (VTK XML). */
 #pragma once
 
-#include "base/status.h"
+#include "base/names.h"
 #include "io/stream/stream.h"
 
 #include <stdbool.h>
@@ -14,8 +14,8 @@ struct vtk_mesh {
     int64_t node_count;
     const double *x; /* node_count x dim */
     int64_t cell_count;
-    const int32_t *node;      /* cell_count x (dim + 1); NULL: one vertex cell for each node */
-    const char *region_names; /* comma list, "" when there is none */
+    const int32_t *node;  /* cell_count x (dim + 1); NULL: one vertex cell for each node */
+    struct names regions; /* not to be freed */
 };
 
 /* A view of a field on nodes or cells. */
@@ -32,11 +32,9 @@ bool vtk_tensor(const struct section *section, int64_t from[6]);
 
 /* Write a VTK XML unstructured grid: data inline, base64 of little-endian values, or as text. Vectors of 2D
  * meshes (two floating columns) are padded to three; symmetric tensors have six components in VTK's order.
- * Each region is an array "region.NAME" of the field data with its index.
- * STATUS_SYSTEM on failure, also if `file` has a pending error. */
-MUST_CHECK enum status vtu_write(FILE *file, const struct vtk_mesh *mesh, int64_t field_count,
-                                 const struct vtk_field *fields, bool text, struct error *error);
+ * Each region is an array "region.NAME" of the field data with its index. Errors of the file stay in it. */
+void vtu_write(FILE *file, const struct vtk_mesh *mesh, int64_t field_count, const struct vtk_field *fields,
+               bool text);
 
 /* Write a ParaView collection: `count` files (relative to it) with their times. */
-MUST_CHECK enum status pvd_write(FILE *file, int64_t count, char *const names[], const double *times,
-                                 struct error *error);
+void pvd_write(FILE *file, int64_t count, char *const names[], const double *times);

@@ -1,7 +1,6 @@
 /* VTK XML files: the format is described in "VTK File Formats" (Kitware), section XML. */
 #include "io/vtk/vtk.h"
 
-#include <errno.h>
 #include <inttypes.h>
 #include <string.h>
 
@@ -9,42 +8,27 @@ _Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "values are written as
 
 /* ---- sections ---- */
 
-/* Copy item `index` of a comma list into text[size]; false: there is none. */
-static bool list_item(const char *list, int64_t index, char *text, size_t size)
-{
-    for (; index > 0; index--) {
-        list = strchr(list, ',');
-        if (list == NULL) {
-            return false;
-        }
-        list++;
-    }
-    size_t length = strcspn(list, ",");
-    if (length == 0 || length >= size) {
-        return false;
-    }
-    memcpy(text, list, length);
-    text[length] = '\0';
-    return true;
-}
-
-/* Copy the name of a column, from attribute cols=, into text[size]; false: it has none. */
-static bool column_name(const struct section *section, int64_t column, char *text, size_t size)
+/* Copy the name of a column, from attribute cols=, into text[64]; false: it has none. */
+static bool column_name(const struct section *section, int64_t column, char text[64])
 {
     char names[1024];
-    return section_attribute(section, "cols", names, sizeof names) && list_item(names, column, text, size);
+    bool named = section_attribute(section, "cols", names, sizeof names);
+    char *rest = names, *name = named ? strsep(&rest, ",") : NULL;
+    for (; name != NULL && column > 0; column--) {
+        name = strsep(&rest, ",");
+    }
+    return name != NULL && snprintf(text, 64, "%s", name) < 64 && text[0] != '\0';
 }
 
 /* The column of that name, or -1. */
 static int64_t find_column(const struct section *section, const char *wanted)
 {
     char name[64];
-    for (int64_t column = 0; column < section->cols; column++) {
-        if (column_name(section, column, name, sizeof name) && strcmp(name, wanted) == 0) {
-            return column;
-        }
+    int64_t column = section->cols - 1;
+    while (column >= 0 && !(column_name(section, column, name) && strcmp(name, wanted) == 0)) {
+        column--;
     }
-    return -1;
+    return column;
 }
 
 static bool is_floating(const struct section *section)
@@ -64,16 +48,6 @@ bool vtk_tensor(const struct section *section, int64_t from[6])
         found += from[k] >= 0;
     }
     return found == section->cols && (section->cols == 6 || (from[4] < 0 && from[5] < 0));
-}
-
-/* Flush the file; returns the status of all writes to it. */
-static enum status check_written(FILE *file, struct error *error)
-{
-    errno = 0;
-    if (fflush(file) == 0 && ferror(file) == 0) {
-        return STATUS_OK;
-    }
-    return fail(error, STATUS_SYSTEM, "cannot write: %s", errno != 0 ? strerror(errno) : "write error");
 }
 
 /* ---- files ---- */
@@ -230,12 +204,12 @@ static void put_field(struct writer *writer, const struct vtk_mesh *mesh, const 
     struct layout layout = layout_of(mesh, field->section);
     char name[64];
     begin_array(writer, types[field->section->type], field->name, "NumberOfComponents", layout.count);
-    bool is_named = layout.count > 1 && column_name(field->section, 0, name, sizeof name);
+    bool is_named = layout.count > 1 && column_name(field->section, 0, name);
     for (int64_t k = 0; is_named && k < layout.count; k++) {
         int64_t column = layout_column(&layout, field->section, k);
         if (column < 0) {
             fprintf(writer->file, " ComponentName%" PRId64 "=\"%s\"", k, added[k]);
-        } else if (column_name(field->section, column, name, sizeof name)) {
+        } else if (column_name(field->section, column, name)) {
             fprintf(writer->file, " ComponentName%" PRId64 "=\"", k);
             print_escaped(writer->file, name);
             fputc('"', writer->file);
@@ -246,19 +220,18 @@ static void put_field(struct writer *writer, const struct vtk_mesh *mesh, const 
 
 /* Write the regions as arrays by name with their index in cells.region, as readers other than VTK do not
  * support arrays of strings. */
-static void put_regions(struct writer *writer, const char *regions)
+static void put_regions(struct writer *writer, const struct names *regions)
 {
-    char name[256], label[300];
-    bool is_empty = !list_item(regions, 0, name, sizeof name);
-    fputs(is_empty ? "" : "<FieldData>\n", writer->file);
-    for (int64_t i = 0; list_item(regions, i, name, sizeof name); i++) {
-        snprintf(label, sizeof label, "region.%s", name);
+    char label[300];
+    fputs(regions->count == 0 ? "" : "<FieldData>\n", writer->file);
+    for (int64_t i = 0; i < regions->count; i++) {
+        snprintf(label, sizeof label, "region.%s", regions->name[i]);
         begin_array(writer, "Int64", label, "NumberOfTuples", 1);
         begin_data(writer, 1, 8);
         put_integer(writer, i, 8);
         end_array(writer);
     }
-    fputs(is_empty ? "" : "</FieldData>\n", writer->file);
+    fputs(regions->count == 0 ? "" : "</FieldData>\n", writer->file);
 }
 
 static void put_cells(struct writer *writer, const struct vtk_mesh *mesh)
@@ -301,21 +274,20 @@ static void put_fields(struct writer *writer, const struct vtk_mesh *mesh, const
     fprintf(writer->file, "</%s>\n", tag);
 }
 
-enum status vtu_write(FILE *file, const struct vtk_mesh *mesh, int64_t field_count,
-                      const struct vtk_field *fields, bool text, struct error *error)
+void vtu_write(FILE *file, const struct vtk_mesh *mesh, int64_t field_count, const struct vtk_field *fields,
+               bool text)
 {
     struct writer writer = {.file = file, .text = text};
-    union {
-        const double *in;
-        void *out; /* the data of a section, which is not modified */
-    } x = {.in = mesh->x};
-    struct section points = {.type = TYPE_F8, .rows = mesh->node_count, .cols = mesh->dim, .data = x.out};
+    const struct section points = {.type = TYPE_F8,
+                                   .rows = mesh->node_count,
+                                   .cols = mesh->dim,
+                                   .data = (void *)(uintptr_t)mesh->x}; /* which is not modified */
     int64_t cell_count = mesh->node != NULL ? mesh->cell_count : mesh->node_count;
     fputs("<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" "
           "byte_order=\"LittleEndian\" "
           "header_type=\"UInt64\">\n<UnstructuredGrid>\n",
           file);
-    put_regions(&writer, mesh->region_names);
+    put_regions(&writer, &mesh->regions);
     fprintf(file, "<Piece NumberOfPoints=\"%" PRId64 "\" NumberOfCells=\"%" PRId64 "\">\n<Points>\n",
             mesh->node_count, cell_count);
     begin_array(&writer, "Float64", "Points", "NumberOfComponents", 3);
@@ -325,11 +297,9 @@ enum status vtu_write(FILE *file, const struct vtk_mesh *mesh, int64_t field_cou
     put_fields(&writer, mesh, fields, field_count, false);
     put_fields(&writer, mesh, fields, field_count, true);
     fputs("</Piece>\n</UnstructuredGrid>\n</VTKFile>\n", file);
-    return check_written(file, error);
 }
 
-enum status pvd_write(FILE *file, int64_t count, char *const names[], const double *times,
-                      struct error *error)
+void pvd_write(FILE *file, int64_t count, char *const names[], const double *times)
 {
     fputs("<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n<Collection>\n", file);
     for (int64_t i = 0; i < count; i++) {
@@ -338,5 +308,4 @@ enum status pvd_write(FILE *file, int64_t count, char *const names[], const doub
         fputs("\"/>\n", file);
     }
     fputs("</Collection>\n</VTKFile>\n", file);
-    return check_written(file, error);
 }
