@@ -7,26 +7,70 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const struct nifti_type types[] = {
-    {IMAGE_UINT8, "uint8", 1, 1, 0, UINT8_MAX},
-    {IMAGE_INT16, "int16", 2, 1, INT16_MIN, INT16_MAX},
-    {IMAGE_INT32, "int32", 4, 1, INT32_MIN, INT32_MAX},
-    {IMAGE_FLOAT32, "float32", 4, 1, 0, 0},
-    {IMAGE_FLOAT64, "float64", 8, 1, 0, 0},
-    {IMAGE_RGB24, "RGB24", 1, 3, 0, UINT8_MAX},
-    {IMAGE_INT8, "int8", 1, 1, INT8_MIN, INT8_MAX},
-    {IMAGE_UINT16, "uint16", 2, 1, 0, UINT16_MAX},
-    {IMAGE_UINT32, "uint32", 4, 1, 0, UINT32_MAX},
-    {IMAGE_INT64, "int64", 8, 1, -9223372036854774784.0, 9223372036854774784.0},
-    {IMAGE_UINT64, "uint64", 8, 1, 0, 18446744073709549568.0},
-    {IMAGE_RGBA32, "RGBA32", 1, 4, 0, UINT8_MAX},
+const struct nifti_type image_types[IMAGE_TYPES] = {
+    {IMAGE_UINT8,
+     "uint8",
+     1,
+     1,
+     0,
+     UINT8_MAX,
+     {"uint8|uchar|unsigned char|uint8_t", "MET_UCHAR|MET_UCHAR_ARRAY"}},
+    {IMAGE_INT8, "int8", 1, 1, INT8_MIN, INT8_MAX, {"int8|signed char|int8_t", "MET_CHAR|MET_CHAR_ARRAY"}},
+    {IMAGE_INT16,
+     "int16",
+     2,
+     1,
+     INT16_MIN,
+     INT16_MAX,
+     {"int16|short|short int|signed short|signed short int|int16_t", "MET_SHORT|MET_SHORT_ARRAY"}},
+    {IMAGE_UINT16,
+     "uint16",
+     2,
+     1,
+     0,
+     UINT16_MAX,
+     {"uint16|ushort|unsigned short|unsigned short int|uint16_t", "MET_USHORT|MET_USHORT_ARRAY"}},
+    {IMAGE_INT32,
+     "int32",
+     4,
+     1,
+     INT32_MIN,
+     INT32_MAX,
+     {"int32|int|signed int|int32_t", "MET_INT|MET_LONG|MET_INT_ARRAY|MET_LONG_ARRAY"}},
+    {IMAGE_UINT32,
+     "uint32",
+     4,
+     1,
+     0,
+     UINT32_MAX,
+     {"uint32|uint|unsigned int|uint32_t", "MET_UINT|MET_ULONG|MET_UINT_ARRAY|MET_ULONG_ARRAY"}},
+    {IMAGE_INT64,
+     "int64",
+     8,
+     1,
+     -9223372036854774784.0,
+     9223372036854774784.0,
+     {"int64|longlong|long long|long long int|signed long long|signed long long int|int64_t",
+      "MET_LONG_LONG|MET_LONG_LONG_ARRAY"}},
+    {IMAGE_UINT64,
+     "uint64",
+     8,
+     1,
+     0,
+     18446744073709549568.0,
+     {"uint64|ulonglong|unsigned long long|unsigned long long int|uint64_t",
+      "MET_ULONG_LONG|MET_ULONG_LONG_ARRAY"}},
+    {IMAGE_FLOAT32, "float32", 4, 1, 0, 0, {"float", "MET_FLOAT|MET_FLOAT_ARRAY"}},
+    {IMAGE_FLOAT64, "float64", 8, 1, 0, 0, {"double", "MET_DOUBLE|MET_DOUBLE_ARRAY"}},
+    {IMAGE_RGB24, "RGB24", 1, 3, 0, UINT8_MAX, {"uint8", "MET_UCHAR"}},
+    {IMAGE_RGBA32, "RGBA32", 1, 4, 0, UINT8_MAX, {"uint8", "MET_UCHAR"}},
 };
 
 const struct nifti_type *nifti_type(int code)
 {
-    for (size_t t = 0; t < sizeof types / sizeof *types; t++) {
-        if (types[t].code == code) {
-            return &types[t];
+    for (int t = 0; t < IMAGE_TYPES; t++) {
+        if (image_types[t].code == code) {
+            return &image_types[t];
         }
     }
     return NULL;
@@ -66,9 +110,7 @@ void nifti_put(const struct nifti_type *type, double value, unsigned char *bytes
         double whole = isnan(value) ? 0 : fmin(fmax(rint(value), type->least), type->most);
         bits = whole < 0 ? (uint64_t)(int64_t)whole : (uint64_t)whole;
     }
-    for (int b = 0; b < type->bytes; b++) {
-        bytes[b] = (unsigned char)(bits >> (8 * b));
-    }
+    memcpy(bytes, &bits, (size_t)type->bytes);
 }
 
 enum status image_new(struct image *image, const size_t size[3], size_t components, struct error *error)

@@ -3,15 +3,11 @@
 
 #include <string.h>
 
-/* The first name of a type; that of a colour's components. */
-static const char *text_type(const struct header_type *types, int code, char name[32])
+/* The first name of the image's type in a format: 0 NRRD, 1 MetaImage. */
+static void print_type(FILE *file, const struct image *image, int format)
 {
-    size_t t = 0;
-    for (size_t k = 0; k < IMAGE_TYPES; k++) {
-        t = types[k].code == code ? k : t; /* the first one is uint8, as colours are */
-    }
-    snprintf(name, 32, "%.*s", (int)strcspn(types[t].names, "|"), types[t].names);
-    return name;
+    const char *names = nifti_type(image->datatype)->names[format];
+    fwrite(names, 1, strcspn(names, "|"), file);
 }
 
 /* A column of to_world, in LPS and mm. */
@@ -23,7 +19,6 @@ static void print_vector(FILE *file, const struct image *image, int column)
 
 void nrrd_print(const struct image *image, const char *data_file, FILE *file)
 {
-    char type[32];
     bool several = image->components > 1;
     bool vector = image->intent == IMAGE_INTENT_VECTOR || image->intent == IMAGE_INTENT_DISPLACEMENT;
     const char *kind = image->datatype == IMAGE_RGB24    ? " RGB-color"
@@ -34,8 +29,9 @@ void nrrd_print(const struct image *image, const char *data_file, FILE *file)
     if (image->description[0] != '\0') {
         fprintf(file, "content: %s\n", image->description);
     }
-    fprintf(file, "type: %s\ndimension: %d\nspace: left-posterior-superior\nsizes:",
-            text_type(nrrd_types, image->datatype, type), several ? 4 : 3);
+    fputs("type: ", file);
+    print_type(file, image, 0);
+    fprintf(file, "\ndimension: %d\nspace: left-posterior-superior\nsizes:", several ? 4 : 3);
     if (several) {
         fprintf(file, " %zu", image->components);
     }
@@ -54,7 +50,6 @@ void nrrd_print(const struct image *image, const char *data_file, FILE *file)
 
 void metaimage_print(const struct image *image, const char *data_file, FILE *file)
 {
-    char type[32];
     fprintf(file, "ObjectType = Image\nNDims = 3\n");
     if (image->description[0] != '\0') {
         fprintf(file, "Comment = %s\n", image->description);
@@ -73,6 +68,7 @@ void metaimage_print(const struct image *image, const char *data_file, FILE *fil
     if (image->components > 1) {
         fprintf(file, "ElementNumberOfChannels = %zu\n", image->components);
     }
-    fprintf(file, "ElementType = %s\nElementDataFile = %s\n",
-            text_type(metaimage_types, image->datatype, type), data_file != NULL ? data_file : "LOCAL");
+    fputs("ElementType = ", file);
+    print_type(file, image, 1);
+    fprintf(file, "\nElementDataFile = %s\n", data_file != NULL ? data_file : "LOCAL");
 }

@@ -22,10 +22,14 @@ struct nifti {
 struct nifti_type {
     int code;
     const char *name;
-    int bytes;          /* of one component */
-    int components;     /* of the type itself */
-    double least, most; /* of an integer type; 0, 0: floating point */
+    int bytes;            /* of one component */
+    int components;       /* of the type itself */
+    double least, most;   /* of an integer type; 0, 0: floating point */
+    const char *names[2]; /* in headers of NRRD and of MetaImage, A|B; the first one is written. Those of a
+                             colour are those of its components, whose type comes first. */
 };
+enum { IMAGE_TYPES = 12 };
+extern const struct nifti_type image_types[IMAGE_TYPES];
 
 /* NULL for a type that is not read. */
 const struct nifti_type *nifti_type(int code);
@@ -103,8 +107,8 @@ MUST_CHECK enum status nifti_space(const struct nifti *header, struct image *ima
 MUST_CHECK enum status image_place(struct image *image, double matrix[3][4], const char *form,
                                    struct error *error);
 
-/* Add a sentence to image->note. */
-void image_note(struct image *image, const char *text);
+/* Add a sentence, printed, to image->note. */
+void image_note(struct image *image, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 /* Set image->description: its beginning, '?' for what is not printable. */
 void image_describe(struct image *image, const char *text);

@@ -4,6 +4,7 @@
 #include "base/vector.h"
 
 #include <math.h>
+#include <stdarg.h>
 #include <string.h>
 
 void image_map(const double *m, const double x[3], double place[3])
@@ -45,9 +46,14 @@ void image_to_voxel(const struct image *image, double inverse[3][4])
     }
 }
 
-void image_note(struct image *image, const char *text)
+void image_note(struct image *image, const char *format, ...)
 {
-    text_append(image->note, sizeof image->note, "%s%s", image->note[0] != '\0' ? "; " : "", text);
+    text_append(image->note, sizeof image->note, "%s", image->note[0] != '\0' ? "; " : "");
+    size_t length = strlen(image->note);
+    va_list values;
+    va_start(values, format);
+    vsnprintf(image->note + length, sizeof image->note - length, format, values);
+    va_end(values);
 }
 
 /* NIfTI-1 standard, "quaternion representation of rotation matrix"; lengths and signs in pixdim. */

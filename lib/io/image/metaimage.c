@@ -11,59 +11,13 @@ struct metaimage {
     struct image_layout layout;
     int64_t dimension, channels;
     bool element_msb; /* the older key of the byte order */
+    bool is_compressed, is_binary;
+    int word; /* of those of which only one is read */
     double size[3], spacing[3], element[3], origin[3], axes[9];
 };
 
 /* Fields of which it counts whether they are there. */
 enum { SIZE, SPACING, ELEMENT, MATRIX, ORIGIN, BINARY_MSB, ELEMENT_MSB };
-
-static enum status take_flag(const struct text_header *header, bool *flag, struct error *error)
-{
-    *flag = header->value[0] != '\0' && strchr("Tt1", header->value[0]) != NULL;
-    return *flag || (header->value[0] != '\0' && strchr("Ff0", header->value[0]) != NULL)
-               ? STATUS_OK
-               : header_fail(header, "True or False is expected", error);
-}
-
-static enum status set_object(void *context, const struct text_header *header, struct error *error)
-{
-    (void)context;
-    return strcasecmp(header->value, "Image") == 0 ? STATUS_OK : header_fail(header, "not an image", error);
-}
-
-static enum status set_big_endian(void *context, const struct text_header *header, struct error *error)
-{
-    return take_flag(header, &((struct metaimage *)context)->layout.swapped, error);
-}
-
-static enum status set_element_msb(void *context, const struct text_header *header, struct error *error)
-{
-    return take_flag(header, &((struct metaimage *)context)->element_msb, error);
-}
-
-static enum status set_encoding(void *context, const struct text_header *header, struct error *error)
-{
-    struct image_layout *layout = &((struct metaimage *)context)->layout;
-    bool is_compressed = header_is("CompressedData", header->key), flag;
-    RETURN_IF_ERROR(take_flag(header, &flag, error));
-    if (flag == is_compressed) {
-        layout->encoding = flag ? IMAGE_PACKED : IMAGE_ASCII;
-    }
-    return STATUS_OK;
-}
-
-static enum status set_unit(void *context, const struct text_header *header, struct error *error)
-{
-    (void)context;
-    return header_is("mm|?", header->value) ? STATUS_OK : header_fail(header, "only mm is read", error);
-}
-
-static enum status set_comment(void *context, const struct text_header *header, struct error *error)
-{
-    (void)error;
-    image_describe(((struct metaimage *)context)->image, header->value);
-    return STATUS_OK;
-}
 
 #define AT(member) offsetof(struct metaimage, member)
 
@@ -73,17 +27,17 @@ static const struct header_field fields[] = {
     [ELEMENT] = {"ElementSize", HEADER_VECTOR, AT(element)},
     [MATRIX] = {"TransformMatrix|Rotation|Orientation", HEADER_MATRIX, AT(axes)},
     [ORIGIN] = {"Offset|Position|Origin", HEADER_VECTOR, AT(origin)},
-    [BINARY_MSB] = {"BinaryDataByteOrderMSB", .set = set_big_endian},
-    [ELEMENT_MSB] = {"ElementByteOrderMSB", .set = set_element_msb},
-    {"ObjectType", .set = set_object},
-    {"Comment", .set = set_comment},
+    [BINARY_MSB] = {"BinaryDataByteOrderMSB", HEADER_FLAG, AT(layout.swapped)},
+    [ELEMENT_MSB] = {"ElementByteOrderMSB", HEADER_FLAG, AT(element_msb)},
+    {"ObjectType", HEADER_WORD, AT(word), .words = "Image"},
+    {"Comment", HEADER_TEXT, AT(image)},
     {"NDims", HEADER_INTEGER, AT(dimension), 2, 3},
     {"ElementNumberOfChannels", HEADER_INTEGER, AT(channels), 1, INT32_MAX},
     {"ElementType", HEADER_TYPE, AT(layout)},
-    {"CompressedData", .set = set_encoding},
-    {"BinaryData", .set = set_encoding},
+    {"CompressedData", HEADER_FLAG, AT(is_compressed)},
+    {"BinaryData", HEADER_FLAG, AT(is_binary)},
     {"HeaderSize", HEADER_INTEGER, AT(layout.skip_bytes), -1, HEADER_SKIP},
-    {"DistanceUnits", .set = set_unit},
+    {"DistanceUnits", HEADER_WORD, AT(word), .words = "mm|?"},
     {"ObjectSubType|TransformType|Name|ID|ParentID|Color|AcquisitionDate|CenterOfRotation|"
      "AnatomicalOrientation|CompressedDataSize|Modality|SequenceID|ElementMin|ElementMax|ElementNBits",
      HEADER_LEFT},
@@ -135,9 +89,8 @@ enum status metaimage_header(struct image_bytes *file, struct image *image, stru
 {
     struct text_header header = {.file = file, .separator = '='};
     struct metaimage meta = {
-        .image = image, .layout = {.together = true}, .spacing = {1, 1, 1}, .channels = 1};
+        .image = image, .layout = {.together = true}, .spacing = {1, 1, 1}, .channels = 1, .is_binary = true};
     header.dimension = &meta.dimension;
-    header.types = metaimage_types;
     for (;;) {
         RETURN_IF_ERROR(header_next(&header, error));
         if (header.key == NULL) {
@@ -161,6 +114,7 @@ enum status metaimage_header(struct image_bytes *file, struct image *image, stru
         meta.layout.swapped = meta.element_msb;
     }
     *layout = meta.layout;
+    layout->encoding = meta.is_compressed ? IMAGE_PACKED : meta.is_binary ? IMAGE_RAW : IMAGE_ASCII;
     if (layout->type == NULL || !header_has(&header, SIZE)) {
         return fail(error, STATUS_INPUT, "header: no %s", layout->type == NULL ? "ElementType" : "DimSize");
     }

@@ -18,6 +18,7 @@ struct nrrd {
     int64_t dimension, space_dimension;
     double size[AXES], direction[AXES][3], spacing[AXES], first[AXES], origin[3];
     bool has_direction[AXES], has_directions, is_cell_centred;
+    int endian, encoding; /* 1: big; enum image_encoding */
     enum kind kind[AXES];
     double sign[3];      /* of the space's axes, to RAS */
     double unit[3];      /* of the space's axes, m */
@@ -160,33 +161,6 @@ static enum status set_kinds(void *context, const struct text_header *header, st
     return STATUS_OK;
 }
 
-static enum status set_encoding(void *context, const struct text_header *header, struct error *error)
-{
-    static const char *const names[] = {
-        [IMAGE_RAW] = "raw", [IMAGE_PACKED] = "gzip|gz", [IMAGE_ASCII] = "ascii|text|txt"};
-    for (int e = IMAGE_RAW; e <= IMAGE_ASCII; e++) {
-        if (header_is(names[e], header->value)) {
-            ((struct nrrd *)context)->layout.encoding = (enum image_encoding)e;
-            return STATUS_OK;
-        }
-    }
-    return header_fail(header, "raw, gzip and ascii are read: save it with one of these", error);
-}
-
-static enum status set_endian(void *context, const struct text_header *header, struct error *error)
-{
-    ((struct nrrd *)context)->layout.swapped = header_is("big", header->value);
-    return header_is("little|big", header->value) ? STATUS_OK
-                                                  : header_fail(header, "little and big are read", error);
-}
-
-static enum status set_content(void *context, const struct text_header *header, struct error *error)
-{
-    (void)error;
-    image_describe(((struct nrrd *)context)->image, header->value);
-    return STATUS_OK;
-}
-
 /* Fields of which it counts whether they are there. */
 enum { SIZES, SPACINGS, MINS, MAXS, ENDIAN, ORIGIN };
 
@@ -197,7 +171,7 @@ static const struct header_field fields[] = {
     [SPACINGS] = {"spacings", HEADER_VECTOR, AT(spacing)},
     [MINS] = {"axis mins|axismins", HEADER_VECTOR, AT(first)},
     [MAXS] = {"axis maxs|axismaxs", .set = NULL},
-    [ENDIAN] = {"endian", .set = set_endian},
+    [ENDIAN] = {"endian", HEADER_WORD, AT(endian), .words = "little big"},
     [ORIGIN] = {"space origin", .set = set_origin},
     {"type", HEADER_TYPE, AT(layout)},
     {"dimension", HEADER_INTEGER, AT(dimension), 2, AXES},
@@ -208,11 +182,11 @@ static const struct header_field fields[] = {
     {"space units", .set = set_space_units},
     {"units", .set = set_units},
     {"kinds", .set = set_kinds},
-    {"encoding", .set = set_encoding},
+    {"encoding", HEADER_WORD, AT(encoding), .words = "raw gzip|gz ascii|text|txt"},
     {"line skip|lineskip", HEADER_INTEGER, AT(layout.skip_lines), 0, INT32_MAX},
     {"byte skip|byteskip", HEADER_INTEGER, AT(layout.skip_bytes), -1, HEADER_SKIP},
     {"data file|datafile", HEADER_FILE, AT(layout)},
-    {"content", .set = set_content},
+    {"content", HEADER_TEXT, AT(image)},
     {"number|block size|blocksize|min|max|old min|oldmin|old max|oldmax|labels|thicknesses|sample units|"
      "sampleunits|measurement frame",
      HEADER_LEFT},
@@ -286,9 +260,10 @@ static enum status place(struct nrrd *nrrd, const struct text_header *header, st
         places++;
     }
     if (image->space == IMAGE_SPACE_UNKNOWN) {
-        image_note(image, nrrd->has_directions || header_has(header, SPACINGS)
-                              ? "has no anatomical space: axes taken to be RAS"
-                              : "has neither spacing nor anatomical space: 1 mm, and axes RAS, taken");
+        image_note(image, "%s",
+                   nrrd->has_directions || header_has(header, SPACINGS)
+                       ? "has no anatomical space: axes taken to be RAS"
+                       : "has neither spacing nor anatomical space: 1 mm, and axes RAS, taken");
     }
     if (nrrd->has_directions && !header_has(header, ORIGIN)) {
         image_note(image, "has no space origin: the first voxel lies at 0");
@@ -337,20 +312,19 @@ enum status nrrd_header(struct image_bytes *file, struct image *image, struct im
                         .unit = {1e-3, 1e-3, 1e-3},
                         .length = {1e-3, 1e-3, 1e-3, 1e-3}};
     header.dimension = &nrrd.dimension;
-    header.types = nrrd_types;
     RETURN_IF_ERROR(header_line(&header, error));
     if (strlen(header.line) != 8 || strncmp(header.line, "NRRD000", 7) != 0 ||
         strchr("123456", header.line[7]) == NULL) {
         return fail(error, STATUS_INPUT, "begins with '%.20s': NRRD0001 to NRRD0006 are read", header.line);
     }
-    for (;;) {
-        RETURN_IF_ERROR(header_next(&header, error));
-        if (header.key == NULL) {
-            break;
-        }
+    RETURN_IF_ERROR(header_next(&header, error));
+    while (header.key != NULL) {
         RETURN_IF_ERROR(header.is_pair ? image_segment_field(image, &header, error)
                                        : header_set(&header, fields, FIELDS, &nrrd, error));
+        RETURN_IF_ERROR(header_next(&header, error));
     }
+    nrrd.layout.swapped = nrrd.endian == 1;
+    nrrd.layout.encoding = (enum image_encoding)nrrd.encoding;
     RETURN_IF_ERROR(check(&nrrd, &header, error));
     RETURN_IF_ERROR(place(&nrrd, &header, error));
     *layout = nrrd.layout;

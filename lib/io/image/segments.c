@@ -120,22 +120,17 @@ static size_t find_label(const struct image *image, const double *values, size_t
 
 static void note_merge(struct image *image, const struct merge *merge)
 {
-    char text[300];
     for (size_t s = 0; s < image->segment_count; s++) {
         if (image->segment[s].voxels == 0) {
-            snprintf(text, sizeof text, "segment '%.100s' has no voxel", image->segment[s].name);
-            image_note(image, text);
+            image_note(image, "segment '%.100s' has no voxel", image->segment[s].name);
         }
     }
     if (merge->shared > 0) {
-        snprintf(text, sizeof text,
-                 "segments overlap in %zu voxels, first '%.40s' and '%.40s': the later is taken",
-                 merge->shared, image->segment[merge->first[0]].name, image->segment[merge->first[1]].name);
-        image_note(image, text);
+        image_note(image, "segments overlap in %zu voxels, first '%.40s' and '%.40s': the later is taken",
+                   merge->shared, image->segment[merge->first[0]].name, image->segment[merge->first[1]].name);
     }
     if (merge->unnamed > 0) {
-        snprintf(text, sizeof text, "%zu voxels have a label of no segment: left out", merge->unnamed);
-        image_note(image, text);
+        image_note(image, "%zu voxels have a label of no segment: left out", merge->unnamed);
     }
 }
 

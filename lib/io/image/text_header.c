@@ -117,43 +117,42 @@ enum status header_integer(const struct text_header *header, int64_t least, int6
     return header_fail(header, why, error);
 }
 
-const struct header_type nrrd_types[IMAGE_TYPES] = {
-    {IMAGE_UINT8, "uint8|uchar|unsigned char|uint8_t"},
-    {IMAGE_INT8, "int8|signed char|int8_t"},
-    {IMAGE_INT16, "int16|short|short int|signed short|signed short int|int16_t"},
-    {IMAGE_UINT16, "uint16|ushort|unsigned short|unsigned short int|uint16_t"},
-    {IMAGE_INT32, "int32|int|signed int|int32_t"},
-    {IMAGE_UINT32, "uint32|uint|unsigned int|uint32_t"},
-    {IMAGE_INT64, "int64|longlong|long long|long long int|signed long long|signed long long int|int64_t"},
-    {IMAGE_UINT64, "uint64|ulonglong|unsigned long long|unsigned long long int|uint64_t"},
-    {IMAGE_FLOAT32, "float"},
-    {IMAGE_FLOAT64, "double"},
-};
-
-const struct header_type metaimage_types[IMAGE_TYPES] = {
-    {IMAGE_UINT8, "MET_UCHAR|MET_UCHAR_ARRAY"},
-    {IMAGE_INT8, "MET_CHAR|MET_CHAR_ARRAY"},
-    {IMAGE_INT16, "MET_SHORT|MET_SHORT_ARRAY"},
-    {IMAGE_UINT16, "MET_USHORT|MET_USHORT_ARRAY"},
-    {IMAGE_INT32, "MET_INT|MET_LONG|MET_INT_ARRAY|MET_LONG_ARRAY"},
-    {IMAGE_UINT32, "MET_UINT|MET_ULONG|MET_UINT_ARRAY|MET_ULONG_ARRAY"},
-    {IMAGE_INT64, "MET_LONG_LONG|MET_LONG_LONG_ARRAY"},
-    {IMAGE_UINT64, "MET_ULONG_LONG|MET_ULONG_LONG_ARRAY"},
-    {IMAGE_FLOAT32, "MET_FLOAT|MET_FLOAT_ARRAY"},
-    {IMAGE_FLOAT64, "MET_DOUBLE|MET_DOUBLE_ARRAY"},
-};
-
 static enum status take_type(const struct text_header *header, struct image_layout *layout,
                              struct error *error)
 {
-    const struct header_type *types = header->types;
     for (int t = 0; t < IMAGE_TYPES; t++) {
-        if (header_is(types[t].names, header->value)) {
-            layout->type = nifti_type(types[t].code);
+        if (header_is(image_types[t].names[header->separator == '='], header->value)) {
+            layout->type = &image_types[t];
             return STATUS_OK;
         }
     }
     return header_fail(header, "integers of 8 to 64 bits and floats of 32 and 64 are read", error);
+}
+
+/* The value is one of the words of the field: its number. */
+static enum status take_word(const struct text_header *header, const char *words, int *number,
+                             struct error *error)
+{
+    char names[32], why[80];
+    size_t length;
+    *number = 0;
+    for (const char *at = words; *at != '\0'; at += length + (at[length] == ' '), ++*number) {
+        length = strcspn(at, " ");
+        snprintf(names, sizeof names, "%.*s", (int)length, at);
+        if (header_is(names, header->value)) {
+            return STATUS_OK;
+        }
+    }
+    snprintf(why, sizeof why, "one of these is read: %s", words);
+    return header_fail(header, why, error);
+}
+
+static enum status take_flag(const struct text_header *header, bool *flag, struct error *error)
+{
+    *flag = header->value[0] != '\0' && strchr("Tt1", header->value[0]) != NULL;
+    return *flag || (header->value[0] != '\0' && strchr("Ff0", header->value[0]) != NULL)
+               ? STATUS_OK
+               : header_fail(header, "True or False is expected", error);
 }
 
 /* Whether a part of the path is "..". */
@@ -198,6 +197,13 @@ static enum status take(const struct header_field *field, void *context, const s
         return take_type(header, at, error);
     case HEADER_FILE:
         return header_data_file(header, at, error);
+    case HEADER_WORD:
+        return take_word(header, field->words, at, error);
+    case HEADER_FLAG:
+        return take_flag(header, at, error);
+    case HEADER_TEXT:
+        image_describe(*(struct image **)at, header->value);
+        return STATUS_OK;
     case HEADER_LEFT:
         return STATUS_OK;
     case HEADER_SET:
@@ -223,10 +229,8 @@ enum status header_set(struct text_header *header, const struct header_field *fi
 
 void header_note_unknown(const struct text_header *header, struct image *image)
 {
-    char note[sizeof header->unknown + 40];
     if (header->unknown[0] != '\0') {
-        snprintf(note, sizeof note, "fields that are not known, left out: %s", header->unknown + 2);
-        image_note(image, note);
+        image_note(image, "fields that are not known, left out: %s", header->unknown + 2);
     }
 }
 

@@ -6,16 +6,13 @@
 
 #include <stdio.h>
 
-struct header_type;
-
 /* A header that is read line by line. */
 struct text_header {
     struct image_bytes *file;
     char separator;           /* ':' or '=' */
     char *line;               /* in the file */
     const int64_t *dimension; /* of the image, as the header gives it; 0: not yet */
-    const struct header_type *types;
-    char *key; /* of the field read last; NULL: the header has ended */
+    char *key;                /* of the field read last; NULL: the header has ended */
     char *value;
     bool is_pair;      /* it is KEY:=VALUE */
     bool cut;          /* the file has ended without an empty line */
@@ -34,8 +31,9 @@ bool header_is(const char *names, const char *word);
 
 /* The keys of a field, A|B, and what takes its value: a function, NULL where only whether it is there counts;
  * or a place in the context: of a whole number (int64_t) from least to most, of numbers (double), one for
- * each dimension or pair of these; of an image_layout, for the type of the values or their file. HEADER_LEFT:
- * it is known, and means nothing here. */
+ * each dimension or pair of these; of an image_layout, for the type of the values or their file; of the
+ * number (int) of one of some words, A|B each; of True or False (bool); of a pointer to the image, which it
+ * describes. HEADER_LEFT: it is known, and means nothing here. */
 struct header_field {
     const char *keys;
     enum {
@@ -45,10 +43,14 @@ struct header_field {
         HEADER_MATRIX,
         HEADER_TYPE,
         HEADER_FILE,
+        HEADER_WORD,
+        HEADER_FLAG,
+        HEADER_TEXT,
         HEADER_LEFT
     } kind;
     size_t at; /* offset in the context */
     int64_t least, most;
+    const char *words; /* with blanks between them */
     enum status (*set)(void *context, const struct text_header *header, struct error *error);
 };
 
@@ -78,14 +80,6 @@ bool header_numbers(const char **at, int count, double *numbers);
 /* The value is a whole number from least to most. */
 MUST_CHECK enum status header_integer(const struct text_header *header, int64_t least, int64_t most,
                                       int64_t *number, struct error *error);
-
-/* A type of values and its names, A|B; the first one is written. */
-enum { IMAGE_TYPES = 10 };
-struct header_type {
-    int code;
-    const char *names;
-};
-extern const struct header_type nrrd_types[IMAGE_TYPES], metaimage_types[IMAGE_TYPES];
 
 /* The value is the name of a file in the folder of the header or below. */
 MUST_CHECK enum status header_data_file(const struct text_header *header, struct image_layout *layout,
