@@ -61,8 +61,8 @@ static int list(struct tool *tool)
 {
     FREED_BY(stream_free) struct stream stream = {0};
     tool_read(tool, tool->operands[1], &stream);
-    for (int64_t i = 0; tool_given(tool, "verbose") && i < stream.provenance_count; i++) {
-        printf("# @ %s\n", stream.provenance[i]);
+    for (int64_t i = 0; tool_given(tool, "verbose") && i < stream.provenance.count; i++) {
+        printf("# @ %s\n", stream.provenance.name[i]);
     }
     for (int64_t i = 0; i < stream.section_count; i++) {
         const struct section *section = &stream.sections[i];

@@ -56,6 +56,7 @@ static const char usage[] =
 #include "stage_options.h"
 #include "stages/stages.h"
 
+#include <math.h>
 #include <string.h>
 
 /* Whether -i says that supports stop nowhere. */
@@ -90,22 +91,23 @@ static void note_report(const struct tool *tool, const struct support_report *re
     int64_t widened = 0;
     double widest = 1.0;
     for (int l = 0; l < report->lists; l++) {
-        widened += report->list[l].widened;
-        widest = report->list[l].widest > widest ? report->list[l].widest : widest;
+        widened += report->list[l].lists.widened;
+        widest = fmax(widest, report->list[l].lists.widest);
     }
     if (report->visibility == VISIBILITY_DISTANCE) {
         tool_note(tool, "neighbours by distance alone: supports act across gaps");
     }
     tool_note(tool, "widened at %lld points, at most %.3g times", (long long)widened, widest);
     for (int l = 0; l < report->lists; l++) {
-        int64_t points = report->list[l].points;
-        tool_note(tool, "%lld %s: %lld to %lld neighbours, mean %.1f, widened at %lld", (long long)points,
-                  report->list[l].what, (long long)report->list[l].fewest, (long long)report->list[l].most,
-                  points > 0 ? (double)report->list[l].pairs / (double)points : 0.0,
-                  (long long)report->list[l].widened);
-        if (report->list[l].around > 0) {
-            tool_note(tool, "%lld neighbours of %s are around corners", (long long)report->list[l].around,
-                      report->list[l].what);
+        const struct list_report *list = &report->list[l];
+        const struct support_lists *found = &list->lists;
+        tool_note(tool, "%lld %s: %lld to %lld neighbours, mean %.1f, widened at %lld",
+                  (long long)found->count, list->what, (long long)found->fewest, (long long)found->most,
+                  found->count > 0 ? (double)list->pairs / (double)found->count : 0.0,
+                  (long long)found->widened);
+        if (found->around_count > 0) {
+            tool_note(tool, "%lld neighbours of %s are around corners", (long long)found->around_count,
+                      list->what);
         }
     }
 }

@@ -263,9 +263,7 @@ enum status parse_length_unit(const char *text, const char *what, double *metres
     return status;
 }
 
-/* A number within [least, 1e12] with or without a unit. */
-static enum status parse_in_metres(const char *text, const char *what, double least, double *value,
-                                   struct error *error)
+enum status parse_length(const char *text, const char *what, double least, double *value, struct error *error)
 {
     char number[64];
     double unit = 1.0;
@@ -281,16 +279,6 @@ static enum status parse_in_metres(const char *text, const char *what, double le
     }
     *value *= unit;
     return STATUS_OK;
-}
-
-enum status parse_length(const char *text, const char *what, double *value, struct error *error)
-{
-    return parse_in_metres(text, what, 1e-12, value, error);
-}
-
-enum status parse_coordinate(const char *text, const char *what, double *value, struct error *error)
-{
-    return parse_in_metres(text, what, -1e12, value, error);
 }
 
 enum status parse_choice(const char *text, const char *what, const char *const choices[], int count,

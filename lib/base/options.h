@@ -66,13 +66,11 @@ MUST_CHECK enum status parse_double_list(const char *text, const char *what, dou
 MUST_CHECK enum status parse_length_unit(const char *text, const char *what, double *metres,
                                          struct error *error);
 
-/* Parse a length: a number with a unit (8mm, 0.8cm, 0.008m) or without one (metres), positive; *value in
- * metres. */
-MUST_CHECK enum status parse_length(const char *text, const char *what, double *value, struct error *error);
-
-/* The same for a coordinate, which need not be positive. */
-MUST_CHECK enum status parse_coordinate(const char *text, const char *what, double *value,
-                                        struct error *error);
+/* Parse a length or coordinate: a number within [least, 1e12] with a unit (8mm, 0.8cm, 0.008m) or without one
+ * (metres); *value in metres. */
+#define LEAST_LENGTH 1e-12
+MUST_CHECK enum status parse_length(const char *text, const char *what, double least, double *value,
+                                    struct error *error);
 
 /* Index of `text` among `count` choices; the error lists them. */
 MUST_CHECK enum status parse_choice(const char *text, const char *what, const char *const choices[],

@@ -1,5 +1,6 @@
 #include "base/ranks.h"
 
+#include "base/lists.h"
 #include "base/memory.h"
 
 #include <stdlib.h>
@@ -76,16 +77,7 @@ enum status ranks_share(const struct ranks *ranks, int64_t items, const double *
 
 int ranks_owner(const struct ranks *ranks, const int64_t *first, int64_t item)
 {
-    int low = 0, high = ranks_count(ranks) - 1;
-    while (low < high) {
-        int middle = (low + high) / 2;
-        if (first[middle + 1] > item) {
-            high = middle;
-        } else {
-            low = middle + 1;
-        }
-    }
-    return low;
+    return (int)first_from(first, 1, ranks_count(ranks), item + 1) - 1;
 }
 
 enum status row_ranges_of(int64_t begin, int64_t end, const bool *wanted, struct row_ranges *ranges,
@@ -186,11 +178,7 @@ enum status halo_build(const struct ranks *ranks, int64_t items, const bool *wan
 
 void halo_free(struct halo *halo)
 {
-    void *arrays[] = {halo->send_first, halo->receive_first, halo->send,
-                      halo->receive,    halo->sent,          halo->received};
-    for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
-        free(arrays[i]);
-    }
+    FREE_ALL(halo->send_first, halo->receive_first, halo->send, halo->receive, halo->sent, halo->received);
     *halo = (struct halo){0};
 }
 

@@ -33,11 +33,9 @@ MUST_CHECK enum status stage_radii(const struct stream *stream, const struct sup
 /* Statistics of one of the lists of `support`, */
 struct list_report {
     const char *what; /* "points on faces" */
-    int64_t points, pairs, fewest, most, widened;
-    int64_t around; /* pairs that see each other around corners */
-    double widest;
-    struct steep_points steep; /* and the place of the worst one */
-    char steepest[96];
+    int64_t pairs;
+    struct support_lists lists; /* without its arrays */
+    char steepest[96];          /* the place of the worst of lists.steep */
 };
 
 /* and of all lists. */

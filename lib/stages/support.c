@@ -56,18 +56,11 @@ static enum status put_lists(struct stream *stream, const struct support_options
     RETURN_IF_ERROR(support_space_lists(options, space, &listed->places, count, points->data, points->name,
                                         &lists, error));
     int64_t pairs = lists.ptr[count];
-    report->list[report->lists++] = (struct list_report){.what = listed->called,
-                                                         .points = count,
-                                                         .pairs = pairs,
-                                                         .fewest = lists.fewest,
-                                                         .most = lists.most,
-                                                         .widened = lists.widened,
-                                                         .around = lists.around_count,
-                                                         .widest = lists.widest,
-                                                         .steep = lists.steep};
+    struct list_report *told = &report->list[report->lists++];
+    *told = (struct list_report){.what = listed->called, .pairs = pairs, .lists = lists};
     if (lists.steep.count > 0) {
         point_text((int)points->cols, (const double *)points->data + lists.steep.point * points->cols,
-                   report->list[report->lists - 1].steepest);
+                   told->steepest);
     }
     RETURN_IF_ERROR(stream_put_member(stream, prefix, "ptr", TYPE_I8, count + 1, 1, "", &lists.ptr, error));
     RETURN_IF_ERROR(stream_put_member(stream, prefix, "idx", TYPE_I4, pairs, 1, "", &lists.idx, error));

@@ -331,9 +331,8 @@ enum status stream_put_copy(struct stream *stream, const char *name, enum elemen
 
 void stream_inherit(struct stream *stream, struct stream *from)
 {
-    stream->provenance = array_take(&from->provenance);
-    stream->provenance_count = from->provenance_count;
-    from->provenance_count = 0;
+    stream->provenance = from->provenance;
+    from->provenance = (struct names){0};
 }
 
 const char *vector_attributes(int dim, const char *unit, char text[64])

@@ -27,9 +27,9 @@ static bool is_nan(const struct section *section, int64_t i)
 static void require_same(const struct stream *a, const struct stream *b)
 {
     REQUIRE(a->section_count == b->section_count);
-    REQUIRE(a->provenance_count == b->provenance_count);
-    for (int64_t i = 0; i < a->provenance_count; i++) {
-        REQUIRE(strcmp(a->provenance[i], b->provenance[i]) == 0);
+    REQUIRE(a->provenance.count == b->provenance.count);
+    for (int64_t i = 0; i < a->provenance.count; i++) {
+        REQUIRE(strcmp(a->provenance.name[i], b->provenance.name[i]) == 0);
     }
     for (int64_t s = 0; s < a->section_count; s++) {
         const struct section *left = &a->sections[s], *right = &b->sections[s];

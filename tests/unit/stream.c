@@ -113,7 +113,7 @@ TEST(tolerated_text)
     assert_true(x[0] == 1 && x[1] == 2.5 && x[2] == 5 && isinf(x[3]) && x[3] < 0 && isnan(x[4]) &&
                 isnan(x[5]));
     assert_string_equal(stream.sections[0].attributes, "unit=m");
-    assert_string_equal(stream.provenance[0], "awk");
+    assert_string_equal(stream.provenance.name[0], "awk");
 }
 
 TEST(sections_by_name)
@@ -167,7 +167,7 @@ TEST(sections_by_name)
 TEST(provenance_is_quoted_for_a_shell)
 {
     FREED_BY(stream_free) struct stream stream = sample_stream();
-    assert_string_equal(stream.provenance[0],
+    assert_string_equal(stream.provenance.name[0],
                         "nodes " MTS_VERSION " nodes -u mm 'it'\\''s a file' '' $'line\\x0aend'");
 }
 

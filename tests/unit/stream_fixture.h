@@ -92,9 +92,9 @@ static inline void assert_same_section(const struct section *a, const struct sec
 static inline void assert_same_stream(const struct stream *a, const struct stream *b)
 {
     assert_int_equal(a->section_count, b->section_count);
-    assert_int_equal(a->provenance_count, b->provenance_count);
-    for (int64_t i = 0; i < a->provenance_count; i++) {
-        assert_string_equal(a->provenance[i], b->provenance[i]);
+    assert_int_equal(a->provenance.count, b->provenance.count);
+    for (int64_t i = 0; i < a->provenance.count; i++) {
+        assert_string_equal(a->provenance.name[i], b->provenance.name[i]);
     }
     for (int64_t i = 0; i < a->section_count; i++) {
         assert_same_section(&a->sections[i], &b->sections[i]);

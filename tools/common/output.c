@@ -52,19 +52,15 @@ static mode_t file_mode(const struct stat *present)
     return 0666 & ~mask;
 }
 
-/* FOLDER/.NAME.XXXXXX beside `target`; a long name is shortened to fit. */
-static char *temporary_name(const char *target)
+/* TARGET.part, or FOLDER/.NAME.XXXXXX beside it; a long name is shortened to fit. */
+static char *temporary_name(const char *target, bool grows)
 {
     const char *slash = strrchr(target, '/');
     int folder = slash != NULL ? (int)(slash - target + 1) : 0;
     char *name;
-    return asprintf(&name, "%.*s.%.200s.XXXXXX", folder, target, target + folder) < 0 ? NULL : name;
-}
-
-static char *part_name(const char *target)
-{
-    char *name;
-    return asprintf(&name, "%s.part", target) < 0 ? NULL : name;
+    int length = grows ? asprintf(&name, "%s.part", target)
+                       : asprintf(&name, "%.*s.%.200s.XXXXXX", folder, target, target + folder);
+    return length < 0 ? NULL : name;
 }
 
 static enum status fail_output(const struct output *output, struct error *error)
@@ -89,20 +85,16 @@ static int open_new(struct output *output)
 static enum status open_temporary(struct output *output, bool grows, const struct stat *present,
                                   struct error *error)
 {
-    output->temporary = grows ? part_name(output->target) : temporary_name(output->target);
+    output->temporary = temporary_name(output->target, grows);
     if (output->temporary == NULL) {
         return fail_memory(error, output->name);
     }
     output->descriptor =
         grows ? open(output->temporary, O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0666)
               : open_new(output);
-    if (output->descriptor < 0) {
-        return fail_output(output, error);
-    }
-    if (fchmod(output->descriptor, file_mode(present)) != 0) {
-        return fail_output(output, error);
-    }
-    return STATUS_OK;
+    return output->descriptor >= 0 && fchmod(output->descriptor, file_mode(present)) == 0
+               ? STATUS_OK
+               : fail_output(output, error);
 }
 
 /* Close and remove the temporary file; the former file stays unchanged. */

@@ -23,12 +23,13 @@ void support_note_steep(const struct tool *tool, const struct support_options *o
 {
     for (int l = 0; l < report->lists; l++) {
         const struct list_report *list = &report->list[l];
-        if (list->steep.count > 0) {
+        const struct steep_points *steep = &list->lists.steep;
+        if (steep->count > 0) {
             tool_note(tool,
                       "%s: %lld of %lld have gradients beyond the bound with all radii; the least steep are "
                       "taken: worst at %s m, |grad phi| times spacing %.3g for %g",
-                      list->what, (long long)list->steep.count, (long long)list->points, list->steepest,
-                      list->steep.steepness, options->gradient_bound);
+                      list->what, (long long)steep->count, (long long)list->lists.count, list->steepest,
+                      steep->steepness, options->gradient_bound);
         }
     }
 }

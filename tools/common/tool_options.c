@@ -38,7 +38,7 @@ int64_t tool_integer(const struct tool *tool, const char *option, int64_t least,
 double tool_length(const struct tool *tool, const char *option, double otherwise)
 {
     double value = otherwise;
-    PARSE_GIVEN(parse_length, &value);
+    PARSE_GIVEN(parse_length, LEAST_LENGTH, &value);
     return value;
 }
 
@@ -98,23 +98,25 @@ int tool_values(const struct tool *tool, const char *option, const char *values[
     return count;
 }
 
-void tool_excludes(const struct tool *tool, const char *option, const char *other)
+/* Exit with the message if the first option was given, and the other one was or was not. */
+static void refuse_pair(const struct tool *tool, const char *option, const char *other, bool both,
+                        const char *between)
 {
     char one[32], two[32];
-    const struct option *first = options_find(&tool->options, option);
-    const struct option *second = options_find(&tool->options, other);
-    if (first->given && second->given) {
-        tool_fail(tool, STATUS_INPUT, "give one of %s and %s", option_text(first, one),
-                  option_text(second, two));
+    const struct option *first = options_find(&tool->options, option),
+                        *second = options_find(&tool->options, other);
+    if (first->given && second->given == both) {
+        tool_fail(tool, STATUS_INPUT, "%s%s %s %s", both ? "give one of " : "", option_text(first, one),
+                  between, option_text(second, two));
     }
+}
+
+void tool_excludes(const struct tool *tool, const char *option, const char *other)
+{
+    refuse_pair(tool, option, other, true, "and");
 }
 
 void tool_requires(const struct tool *tool, const char *option, const char *other)
 {
-    char one[32], two[32];
-    const struct option *first = options_find(&tool->options, option);
-    const struct option *second = options_find(&tool->options, other);
-    if (first->given && !second->given) {
-        tool_fail(tool, STATUS_INPUT, "%s goes with %s", option_text(first, one), option_text(second, two));
-    }
+    refuse_pair(tool, option, other, false, "goes with");
 }

@@ -186,7 +186,7 @@ static void parse_slice(const struct tool *tool, const char *text, int *axis, do
     if (*axis < 0 || *axis > 2 || text[1] != '=' || text[2] == '\0') {
         tool_fail(tool, STATUS_INPUT, "-s: '%s' is not a place on an axis, as z=12mm", text);
     }
-    TOOL_TRY(tool, parse_coordinate(text + 2, "-s", place, &error));
+    TOOL_TRY(tool, parse_length(text + 2, "-s", -1e12, place, &error));
 }
 
 static void choose_slice(const struct tool *tool, struct image *image, const char *slice)

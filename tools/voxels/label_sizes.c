@@ -12,7 +12,7 @@ bool *label_fine_parse(const struct tool *tool, const struct label_image *image,
     SCRATCH char *copy = tool_memory(tool, strdup(text));
     char *names = copy;
     const char *length = strsep(&names, ":");
-    TOOL_TRY(tool, parse_length(length, "--fine", finest, &error));
+    TOOL_TRY(tool, parse_length(length, "--fine", LEAST_LENGTH, finest, &error));
     if (*finest >= spacing) {
         tool_fail(tool, STATUS_INPUT, "--fine: %s is not less than the spacing of -h", length);
     }

@@ -14,7 +14,6 @@ static const size_t size_limit = (size_t)1 << 28;
 /* A file that is being read. */
 struct landmarks {
     struct table *table;
-    int64_t room;
     double sign; /* of x and y, to RAS */
     char *empty; /* label */
 };
@@ -22,20 +21,6 @@ struct landmarks {
 bool landmarks_named(const char *path)
 {
     return text_ends(path, ".mrk.json") || text_ends(path, ".fcsv");
-}
-
-static enum status append(struct landmarks *landmarks, const double x[3], char *label, int64_t line,
-                          struct error *error)
-{
-    struct table *table = landmarks->table;
-    int64_t room = landmarks->room;
-    table->cols = 3;
-    RETURN_IF_ERROR(table_append(table, x, line, &landmarks->room, error));
-    if (landmarks->room > room) {
-        RETURN_IF_ERROR(RESIZE_ARRAY(&table->label, landmarks->room, error));
-    }
-    table->label[table->rows - 1] = label;
-    return STATUS_OK;
 }
 
 /* ---- markups ---- */
@@ -67,7 +52,7 @@ static void read_point(struct landmarks *landmarks, struct json *json)
         json_fail(json, "a control point without a position of three numbers: place it, or leave it out");
     }
     if (json->status == STATUS_OK) {
-        json->status = append(landmarks, x, label, line, json->error);
+        json->status = table_append(landmarks->table, x, line, label, json->error);
     }
 }
 
@@ -221,7 +206,7 @@ static enum status read_line(struct landmarks *landmarks, char *line, int64_t nu
         x[c] *= c < 2 ? landmarks->sign : 1;
     }
     char *label = column[3] >= 0 && column[3] < count ? field[column[3]] : landmarks->empty;
-    return count == 0 ? STATUS_OK : append(landmarks, x, label, number, error);
+    return count == 0 ? STATUS_OK : table_append(landmarks->table, x, number, label, error);
 }
 
 static enum status read_fcsv(struct landmarks *landmarks, char *text, struct error *error)
@@ -250,6 +235,7 @@ enum status landmarks_read(const char *path, struct table *table, struct error *
     table->text = file.text;
     RETURN_IF_ERROR(status);
     landmarks.empty = file.text + file.size;
+    table->cols = 3;
     if (strlen(file.text) != file.size) {
         return fail(error, STATUS_INPUT, "%s: a byte of value 0: not a text", path);
     }

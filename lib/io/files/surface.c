@@ -15,10 +15,7 @@
 static const size_t size_limit = (size_t)1 << 31;
 enum { STL_HEADER = 84, STL_TRIANGLE = 50 };
 
-static uint32_t little_endian(const unsigned char *bytes)
-{
-    return bytes[0] | (uint32_t)bytes[1] << 8 | (uint32_t)bytes[2] << 16 | (uint32_t)bytes[3] << 24;
-}
+_Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "numbers of STL are taken as they lie there");
 
 /* The number of bytes of a binary STL file with this header; 0 if there is no header. */
 static size_t binary_stl_size(const struct textfile *file)
@@ -26,29 +23,27 @@ static size_t binary_stl_size(const struct textfile *file)
     if (file->size < STL_HEADER) {
         return 0;
     }
-    size_t count = little_endian((const unsigned char *)file->text + STL_HEADER - 4);
-    return STL_HEADER + count * STL_TRIANGLE;
+    uint32_t count;
+    memcpy(&count, file->text + STL_HEADER - 4, sizeof count);
+    return STL_HEADER + (size_t)count * STL_TRIANGLE;
 }
 
 static enum status read_binary_stl(const char *path, const struct textfile *file, struct table *table,
                                    struct error *error)
 {
-    int64_t room = 0;
     int64_t count = (int64_t)(file->size - STL_HEADER) / STL_TRIANGLE;
     for (int64_t t = 0; t < count; t++) {
-        const unsigned char *at = (const unsigned char *)file->text + STL_HEADER + t * STL_TRIANGLE;
         double row[9];
+        float corner[9]; /* behind the normal */
+        memcpy(corner, file->text + STL_HEADER + t * STL_TRIANGLE + 12, sizeof corner);
         for (int i = 0; i < 9; i++) {
-            uint32_t bits = little_endian(at + 12 + 4 * i); /* behind the normal */
-            float value;
-            memcpy(&value, &bits, sizeof value);
-            row[i] = (double)value;
-            if (!isfinite(value)) {
+            row[i] = (double)corner[i];
+            if (!isfinite(row[i])) {
                 return fail(error, STATUS_INPUT, "%s: triangle %lld: coordinate that is not finite", path,
                             (long long)t + 1);
             }
         }
-        RETURN_IF_ERROR(table_append(table, row, t + 1, &room, error));
+        RETURN_IF_ERROR(table_append(table, row, t + 1, NULL, error));
     }
     return STATUS_OK;
 }
@@ -95,9 +90,9 @@ static bool is_word(const struct words *words, const char *word)
 }
 
 /* Read a word between "solid NAME" and "endsolid", of which the vertices and the ends of facets count.
- * *line, *vertices, row: of the facet so far; *room: of the table. */
+ * *line, *vertices, row: of the facet so far. */
 static enum status read_stl_word(struct words *words, int64_t *line, int *vertices, double row[9],
-                                 struct table *table, int64_t *room, struct error *error)
+                                 struct table *table, struct error *error)
 {
     if (is_word(words, "facet")) {
         *line = words->line;
@@ -107,7 +102,7 @@ static enum status read_stl_word(struct words *words, int64_t *line, int *vertic
         return read_vector(words, row + 3 * (*vertices)++, error);
     } else if (is_word(words, "endfacet") && *vertices == 3) {
         *vertices = 0;
-        return table_append(table, row, *line, room, error);
+        return table_append(table, row, *line, NULL, error);
     } else if (!is_word(words, "outer") && !is_word(words, "loop") && !is_word(words, "endloop")) {
         return fail_word(words, "has no place here: a facet has three lines 'vertex X Y Z'", error);
     }
@@ -119,7 +114,7 @@ static enum status read_ascii_stl(const char *path, const struct textfile *file,
                                   struct error *error)
 {
     struct words words = {.path = path, .at = file->text, .line = 1};
-    int64_t room = 0, line = 1;
+    int64_t line = 1;
     int vertices = 0;
     bool open = false;
     double row[9];
@@ -128,7 +123,7 @@ static enum status read_ascii_stl(const char *path, const struct textfile *file,
             open = !open && is_word(&words, "solid");
             words.at += strcspn(words.at, "\n");
         } else if (open) {
-            RETURN_IF_ERROR(read_stl_word(&words, &line, &vertices, row, table, &room, error));
+            RETURN_IF_ERROR(read_stl_word(&words, &line, &vertices, row, table, error));
         } else {
             return fail_word(&words, "stands outside of 'solid' and 'endsolid'", error);
         }

@@ -14,14 +14,18 @@
 static const size_t size_limit = (size_t)1 << 31;
 enum { COLUMN_LIMIT = 64, WORD_LIMIT = 64 };
 
-enum status table_append(struct table *table, const double *row, int64_t line, int64_t *room,
+enum status table_append(struct table *table, const double *row, int64_t line, char *label,
                          struct error *error)
 {
-    if (table->rows == *room) {
-        int64_t more = *room > 0 ? 2 * *room : 64;
+    if (table->rows == table->room) {
+        int64_t more = table->room > 0 ? 2 * table->room : 64;
         RETURN_IF_ERROR(RESIZE_ARRAY(&table->values, more * table->cols, error));
         RETURN_IF_ERROR(RESIZE_ARRAY(&table->line, more, error));
-        *room = more;
+        RETURN_IF_ERROR(label != NULL ? RESIZE_ARRAY(&table->label, more, error) : STATUS_OK);
+        table->room = more;
+    }
+    if (label != NULL) {
+        table->label[table->rows] = label;
     }
     memcpy(table->values + table->rows * table->cols, row, (size_t)table->cols * sizeof *row);
     table->line[table->rows++] = line;
@@ -113,7 +117,6 @@ static enum status read_form(const char *path, const struct form *form, struct t
                              struct error *error)
 {
     FREED_BY(textfile_free) struct textfile file = {0};
-    int64_t room = 0;
     int64_t line = 1;
     *table = (struct table){0};
     if (landmarks_named(path)) {
@@ -132,7 +135,7 @@ static enum status read_form(const char *path, const struct form *form, struct t
         if (count > 0) {
             RETURN_IF_ERROR(check_columns(path, line, table, count, form, error));
             table->cols = count;
-            RETURN_IF_ERROR(table_append(table, row, line, &room, error));
+            RETURN_IF_ERROR(table_append(table, row, line, NULL, error));
         }
     }
     if (table->rows == 0) {

@@ -10,6 +10,7 @@
 
 struct table {
     int64_t rows, cols;  /* both >= 1 */
+    int64_t room;        /* rows allocated */
     double *values;      /* rows x cols, finite; NAN where table_read_open read none */
     int64_t *line;       /* rows: the line of each row in its file (the triangle's number for binary STL) */
     char **label;        /* rows: names of landmarks, in `text`; NULL: rows have no names */
@@ -37,9 +38,9 @@ MUST_CHECK enum status table_read_open(const char *path, int least, int most, in
 
 void table_free(struct table *table);
 
-/* Append a row (cols values, copied) to a table, for readers of other formats. *room: number of rows
- * allocated. */
-MUST_CHECK enum status table_append(struct table *table, const double *row, int64_t line, int64_t *room,
+/* Append a row (cols values, copied) to a table, for readers of other formats; `label`: its name, NULL: rows
+ * have none. */
+MUST_CHECK enum status table_append(struct table *table, const double *row, int64_t line, char *label,
                                     struct error *error);
 
 /* End a block behind the last row, unless one ends there already. */

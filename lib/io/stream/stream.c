@@ -3,6 +3,7 @@
 
 #include "base/memory.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
@@ -41,10 +42,7 @@ void stream_free(struct stream *stream)
         section_free(&stream->sections[i]);
     }
     free(stream->sections);
-    for (int64_t i = 0; i < stream->provenance_count; i++) {
-        free(stream->provenance[i]);
-    }
-    free(stream->provenance);
+    names_free(&stream->provenance);
     if (stream->mapping != NULL) {
         munmap(stream->mapping, stream->mapping_size);
     }
@@ -298,4 +296,58 @@ bool section_attribute(const struct section *section, const char *key, char *val
     memcpy(value, found, length);
     value[length] = '\0';
     return true;
+}
+
+/* ---- provenance: the command line of each tool that worked on the stream, as typed into a shell ---- */
+
+static bool has_control(const char *text)
+{
+    for (; *text != '\0'; text++) {
+        if ((unsigned char)*text < 0x20 || *text == 0x7f) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Write an argument as a shell reads it, at most four bytes for each of its own and three more: as it is,
+ * within quotation marks, or with line ends and other control characters as $'...' with escapes. Returns the
+ * end. */
+static char *put_quoted(char *at, const char *argument)
+{
+    static const char safe[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_@%+=:,./-";
+    bool escaped = has_control(argument);
+    if (argument[0] != '\0' && argument[strspn(argument, safe)] == '\0') {
+        return stpcpy(at, argument);
+    }
+    at = stpcpy(at, escaped ? "$'" : "'");
+    for (const char *c = argument; *c != '\0'; c++) {
+        unsigned char byte = (unsigned char)*c;
+        if (escaped && (byte < 0x20 || byte == 0x7f)) {
+            at += sprintf(at, "\\x%02x", byte);
+        } else if (*c == '\'' || (escaped && *c == '\\')) {
+            at += sprintf(at, escaped ? "\\%c" : "'\\%c'", *c);
+        } else {
+            *at++ = *c;
+        }
+    }
+    return stpcpy(at, "'");
+}
+
+enum status stream_add_provenance(struct stream *stream, int argc, char *const argv[], struct error *error)
+{
+    const char *slash = argc > 0 ? strrchr(argv[0], '/') : NULL;
+    const char *tool = slash != NULL ? slash + 1 : argc > 0 ? argv[0] : "";
+    size_t room = 8 * strlen(tool) + sizeof MTS_VERSION + 16;
+    for (int i = 1; i < argc; i++) {
+        room += 4 * strlen(argv[i]) + 4;
+    }
+    NEW_SCRATCH(char, text, (int64_t)room, error);
+    char *at = put_quoted(stpcpy(put_quoted(text, tool), " " MTS_VERSION " "), tool);
+    for (int i = 1; i < argc; i++) {
+        at = put_quoted(stpcpy(at, " "), argv[i]);
+    }
+    return at - text > LINE_LIMIT - 8 /* "# @ " and the newline */
+               ? fail(error, STATUS_INPUT, "the command line is longer than %d bytes", LINE_LIMIT)
+               : names_add(&stream->provenance, text, error);
 }

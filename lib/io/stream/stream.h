@@ -2,7 +2,7 @@
  * Rows count from 0, in messages too. */
 #pragma once
 
-#include "base/status.h"
+#include "base/names.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -29,9 +29,8 @@ struct stream {
     struct section *sections; /* in the order of the stream; adding a section never moves others, removing one
                                  moves those behind it */
     int64_t section_count;
-    char **provenance; /* "# @" lines without "# @ " and newline, oldest first */
-    int64_t provenance_count;
-    void *mapping; /* of the input, or NULL */
+    struct names provenance; /* "# @" lines without "# @ " and newline, oldest first */
+    void *mapping;           /* of the input, or NULL */
     size_t mapping_size;
     bool is_file; /* the mapping is that of a file, else the only copy */
 };

@@ -31,10 +31,6 @@ MUST_CHECK enum status stream_append(struct stream *stream, const char *name, en
  * needed, or `for_good` all. */
 void section_give_back(const struct stream *stream, const struct section *section, bool for_good);
 
-/* stream.c: append a copy of a provenance line. */
-MUST_CHECK enum status stream_append_provenance(struct stream *stream, const char *line, size_t length,
-                                                struct error *error);
-
 #define FIRST_LINE "# mts 1\n"
 
 /* stream_input.c: bytes of the stream in order; its mapping holds them all. */

@@ -221,7 +221,8 @@ static enum status read_lines(struct reader *reader, struct error *error)
         } else {
             frame_count(reader, line, length + 1);
             RETURN_IF_ERROR(provenance_check(line, length, error));
-            RETURN_IF_ERROR(stream_append_provenance(reader->stream, line + 4, length - 4, error));
+            RETURN_IF_ERROR(
+                names_print(&reader->stream->provenance, error, "%.*s", (int)length - 4, line + 4));
         }
     }
     return STATUS_OK;

@@ -112,8 +112,8 @@ void stream_writer_begin(struct stream_writer *writer, FILE *file, bool text, co
     if (provenance != NULL) {
         put_text(writer, FIRST_LINE);
     }
-    for (int64_t i = 0; provenance != NULL && i < provenance->provenance_count; i++) {
-        put_line(writer, "# @ ", provenance->provenance[i]);
+    for (int64_t i = 0; provenance != NULL && i < provenance->provenance.count; i++) {
+        put_line(writer, "# @ ", provenance->provenance.name[i]);
     }
 }
 
