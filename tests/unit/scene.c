@@ -164,7 +164,7 @@ TEST(strict_form)
     fails(HEAD, 0, "no section [material NAME]");
     fails("[scene]\ndim = 2\n" BODY, 1, "[scene]: analysis: missing");
     fails("[scene]\nanalysis = quasi-static\n" BODY, 1, "[scene]: dim: missing");
-    fails("[scene]\ndim = 2.5\nanalysis = dynamic\n" BODY, 2, "dim: 2.5 is neither 2 nor 3");
+    fails("[scene]\ndim = 2.5\nanalysis = dynamic\n" BODY, 2, "dim: '2.5' is not a whole number");
     fails("[scene]\ndim = 2\nanalysis = static\n" BODY, 3, "none of quasi-static, dynamic");
     fails("[scene]\ndim = 2\nanalysis = dynamic\n" BODY, 0, "end_time: missing");
     fails(HEAD "[material m]\nregion = r\nE = 3000 Pa\nnu = .49\nrho = 1\n", 6,
@@ -316,7 +316,7 @@ TEST(solver_and_output)
 {
     fails(HEAD BODY "[solver]\ntolerance = 1\n", 10, "tolerance: 1 is not within (0, 1)");
     fails(HEAD BODY "[solver]\nend_time = 1\n", 10, "a quasi-static scene has duration, in [scene]");
-    fails(HEAD BODY "[solver]\nmax_steps = 0\n", 10, "not a whole number within [1,");
+    fails(HEAD BODY "[solver]\nmax_steps = 0\n", 10, "max_steps: 0 is not within [1,");
     fails(HEAD BODY "[solver]\nmax_steps = 1e3\n", 10, "'1e3' is not a whole number");
     fails(HEAD BODY "[solver]\nconstraints = penalty\n", 10, "none of ebciem, direct");
     fails("[scene]\ndim = 2\nanalysis = dynamic\n" BODY "[solver]\nend_time = 1\ntolerance = .1\n", 11,

@@ -13,7 +13,6 @@ enum { FILE_LIMIT = 64 << 10 };
 
 struct reading {
     struct ini_file *file;
-    struct owned *words;
     int64_t line; /* number of the line at hand, from 1 */
     struct error *error;
 };
@@ -23,12 +22,12 @@ static bool is_blank(char c)
     return c == ' ' || c == '\t';
 }
 
-size_t ini_trimmed(const char *text, size_t length)
+void ini_trim(char *text)
 {
+    size_t length = strlen(text);
     while (length > 0 && is_blank(text[length - 1])) {
-        length--;
+        text[--length] = '\0';
     }
-    return length;
 }
 
 static enum status fail_line(struct reading *reading, const char *what)
@@ -37,86 +36,74 @@ static enum status fail_line(struct reading *reading, const char *what)
                 what);
 }
 
-/* The length of a line without comment and trailing blanks. */
-static size_t content_length(const char *line, size_t length)
+/* A line without comment and blanks at its ends. */
+static char *content(char *line)
 {
-    for (size_t i = 0; i < length; i++) {
+    for (size_t i = 0; line[i] != '\0'; i++) {
         if ((line[i] == '#' || line[i] == ';') && (i == 0 || is_blank(line[i - 1]))) {
-            length = i;
+            line[i] = '\0';
+            break;
         }
     }
-    return ini_trimmed(line, length);
+    ini_trim(line);
+    return line + strspn(line, " \t");
 }
 
-/* *word: a copy, owned by the caller's list. */
-static enum status keep(struct reading *reading, const char *text, size_t length, char **word)
-{
-    *word = strndup(text, length);
-    return owned_add(reading->words, *word, reading->file->path, reading->error);
-}
-
-static bool is_word(const char *text, size_t length)
+static bool is_word(const char *text)
 {
     static const char allowed[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_.-";
-    return length > 0 && strspn(text, allowed) >= length;
+    return text[0] != '\0' && text[strspn(text, allowed)] == '\0';
 }
 
 /* Append the section of a header line `[kind NAME]`. */
-static enum status add_section(struct reading *reading, const char *header, size_t length)
+static enum status add_section(struct reading *reading, char *header)
 {
-    const char *kind = header + 1;
-    const char *end = header + length - 1;
+    struct ini_file *file = reading->file;
+    char *end = header + strlen(header) - 1, *kind = header + 1, *name = kind + strcspn(kind, " \t]");
     if (*end != ']') {
         return fail_line(reading, "section header is not [kind] or [kind NAME]");
     }
-    size_t kind_length = strcspn(kind, " \t]");
-    const char *name = kind + kind_length + strspn(kind + kind_length, " \t");
-    size_t name_length = (size_t)(end - name);
-    if (!is_word(kind, kind_length) || (name_length > 0 && !is_word(name, name_length))) {
+    *end = '\0';
+    while (is_blank(*name)) {
+        *name++ = '\0';
+    }
+    if (!is_word(kind) || (*name != '\0' && !is_word(name))) {
         return fail_line(reading,
                          "section header is not [kind] or [kind NAME] of letters, digits, '_', '.', '-'");
     }
-    struct ini_file *file = reading->file;
-    RETURN_IF_ERROR(RESIZE_ARRAY(&file->sections, file->section_count + 1, reading->error));
-    struct ini_section *section = &file->sections[file->section_count++];
-    char *words[2];
-    *section = (struct ini_section){.line = reading->line};
-    RETURN_IF_ERROR(keep(reading, kind, kind_length, &words[0]));
-    RETURN_IF_ERROR(keep(reading, name, name_length, &words[1]));
-    section->kind = words[0];
-    section->name = words[1];
-    for (const struct ini_section *other = file->sections; other < section; other++) {
-        if (strcmp(other->kind, section->kind) == 0 && strcmp(other->name, section->name) == 0) {
-            return fail(reading->error, STATUS_INPUT, "%s:%lld: [%.*s]: already in line %lld: join the two",
-                        file->path, (long long)reading->line, (int)length - 2, kind, (long long)other->line);
+    for (int64_t s = 0; s < file->section_count; s++) {
+        const struct ini_section *other = &file->sections[s];
+        if (strcmp(other->kind, kind) == 0 && strcmp(other->name, name) == 0) {
+            return fail(reading->error, STATUS_INPUT, "%s:%lld: [%s%s%s]: already in line %lld: join the two",
+                        file->path, (long long)reading->line, kind, *name != '\0' ? " " : "", name,
+                        (long long)other->line);
         }
     }
+    RETURN_IF_ERROR(RESIZE_ARRAY(&file->sections, file->section_count + 1, reading->error));
+    file->sections[file->section_count++] =
+        (struct ini_section){.kind = kind, .name = name, .line = reading->line};
     return STATUS_OK;
 }
 
 /* Append an entry `key = value` to the last section. */
-static enum status add_entry(struct reading *reading, const char *line, size_t length)
+static enum status add_entry(struct reading *reading, char *key)
 {
     struct ini_file *file = reading->file;
-    const char *equals = memchr(line, '=', length);
-    size_t key_length = equals != NULL ? ini_trimmed(line, (size_t)(equals - line)) : 0;
-    char *key, *value;
-    if (equals == NULL) {
+    char *value = strchr(key, '='), what[64] = "has no value";
+    if (value == NULL) {
         return fail_line(reading, "neither [kind NAME], nor key = value, nor a comment");
     }
-    if (!is_word(line, key_length)) {
+    *value++ = '\0';
+    ini_trim(key);
+    value += strspn(value, " \t");
+    if (!is_word(key)) {
         return fail_line(reading, "key before '=' is not one word of letters, digits, '_', '.', '-'");
     }
     if (file->section_count == 0) {
         return fail_line(reading, "stands before the first [section]");
     }
-    const char *text = equals + 1;
-    text += strspn(text, " \t");
-    RETURN_IF_ERROR(keep(reading, line, key_length, &key));
-    RETURN_IF_ERROR(keep(reading, text, text < line + length ? (size_t)(line + length - text) : 0, &value));
     struct ini_section *section = &file->sections[file->section_count - 1];
     const struct ini_entry *other = ini_find(section, key);
-    char what[64] = "has no value";
     if (other != NULL) {
         snprintf(what, sizeof what, "already in line %lld", (long long)other->line);
     }
@@ -133,17 +120,17 @@ static enum status add_entry(struct reading *reading, const char *line, size_t l
 enum status ini_read(const char *path, struct owned *words, struct ini_file *file, struct error *error)
 {
     FREED_BY(textfile_free) struct textfile text = {0};
-    struct reading reading = {.file = file, .words = words, .error = error};
+    struct reading reading = {.file = file, .error = error};
     *file = (struct ini_file){.path = path};
     RETURN_IF_ERROR(textfile_read(path, FILE_LIMIT, &text, error));
     file->checksum = (uint32_t)crc32(0, (const unsigned char *)text.text, (unsigned)text.size);
-    for (const char *at = text.text; *at != '\0'; at = strchr(at, '\n') + 1) {
-        const char *line = at + strspn(at, " \t");
-        size_t length = content_length(line, strcspn(line, "\n"));
+    char *rest = text.text;
+    RETURN_IF_ERROR(owned_add(words, array_take(&text.text), path, error));
+    for (char *line; (line = strsep(&rest, "\n")) != NULL;) {
         reading.line++;
-        if (length > 0) {
-            RETURN_IF_ERROR(line[0] == '[' ? add_section(&reading, line, length)
-                                           : add_entry(&reading, line, length));
+        line = content(line);
+        if (*line != '\0') {
+            RETURN_IF_ERROR(*line == '[' ? add_section(&reading, line) : add_entry(&reading, line));
         }
     }
     return STATUS_OK;

@@ -27,7 +27,7 @@ struct ini_file {
     int64_t section_count;
 };
 
-/* Read an INI file. Its words are added to `words`; this and `path` must outlive it. Errors, as `FILE:LINE:
+/* Read an INI file. Its text is added to `words`; this and `path` must outlive it. Errors, as `FILE:LINE:
  * ...`: those of textfile_read; STATUS_INPUT for headers that are not `[kind]` or `[kind NAME]`, keys without
  * value or outside of a section, and repeated sections and keys. To be freed also on failure. */
 MUST_CHECK enum status ini_read(const char *path, struct owned *words, struct ini_file *file,
@@ -38,5 +38,5 @@ void ini_free(struct ini_file *file);
 /* The entry of that key, or NULL. */
 const struct ini_entry *ini_find(const struct ini_section *section, const char *key);
 
-/* The length of a text without the blanks at its end. */
-size_t ini_trimmed(const char *text, size_t length);
+/* Cut the blanks off the end of a text. */
+void ini_trim(char *text);

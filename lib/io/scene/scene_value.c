@@ -11,6 +11,16 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Put the place of a key, or with key NULL of the section, in front of a message. */
+static enum status fail_at(const struct place *place, const char *key, enum status status)
+{
+    const struct ini_section *section = place->section;
+    const struct ini_entry *entry = key != NULL ? ini_find(section, key) : NULL;
+    return fail_in(place->error, status, "%s:%lld: [%s%s%s]", place->file->path,
+                   (long long)(entry != NULL ? entry->line : section->line), section->kind,
+                   section->name[0] != '\0' ? " " : "", section->name);
+}
+
 enum status place_fail(const struct place *place, const char *key, const char *format, ...)
 {
     char message[sizeof place->error->text];
@@ -18,13 +28,8 @@ enum status place_fail(const struct place *place, const char *key, const char *f
     va_start(arguments, format);
     vsnprintf(message, sizeof message, format, arguments);
     va_end(arguments);
-
-    const struct ini_section *section = place->section;
-    const struct ini_entry *entry = key != NULL ? ini_find(section, key) : NULL;
-    int64_t line = entry != NULL ? entry->line : section->line;
-    return fail(place->error, STATUS_INPUT, "%s:%lld: [%s%s%s]: %s%s%s", place->file->path, (long long)line,
-                section->kind, section->name[0] != '\0' ? " " : "", section->name, key != NULL ? key : "",
-                key != NULL ? ": " : "", message);
+    fail(place->error, STATUS_INPUT, "%s%s%s", key != NULL ? key : "", key != NULL ? ": " : "", message);
+    return fail_at(place, key, STATUS_INPUT);
 }
 
 bool place_has(const struct place *place, const char *key)
@@ -145,37 +150,28 @@ static enum status read_number(const struct place *place, const char *key, const
     return read_within(place, key, text, ranges[type], value);
 }
 
-static enum status read_dim(const struct place *place, const char *key, const char *text, int *dim)
+static enum status read_count(const struct place *place, const char *key, const char *text, int64_t least,
+                              int64_t most, int64_t *value)
 {
-    double value;
-    RETURN_IF_ERROR(number(place, key, text, &value));
-    if (value != 2 && value != 3) {
-        return place_fail(place, key, "%g is neither 2 nor 3", value);
-    }
-    *dim = (int)value;
-    return STATUS_OK;
+    return fail_at(place, key, parse_integer(text, key, least, most, value, place->error));
 }
 
-static enum status read_count(const struct place *place, const char *key, const char *text, int64_t most,
-                              int64_t *value)
+static enum status read_dim(const struct place *place, const char *key, const char *text, int *dim)
 {
-    struct error why;
-    return parse_integer(text, key, 1, most, value, &why) == STATUS_OK
-               ? STATUS_OK
-               : place_fail(place, key, "'%s' is not a whole number within [1, %lld]", text, (long long)most);
+    int64_t value = 0;
+    RETURN_IF_ERROR(read_count(place, key, text, 2, 3, &value));
+    *dim = (int)value;
+    return STATUS_OK;
 }
 
 static enum status read_choice(const struct place *place, const char *key, const char *text,
                                const char *const words[], int *index)
 {
-    char list[256];
-    for (*index = 0; words[*index] != NULL; ++*index) {
-        if (strcmp(text, words[*index]) == 0) {
-            return STATUS_OK;
-        }
+    int count = 0;
+    while (words[count] != NULL) {
+        count++;
     }
-    join(words, list, sizeof list);
-    return place_fail(place, key, "'%s' is none of %s", text, list);
+    return fail_at(place, key, parse_choice(text, key, words, count, index, place->error));
 }
 
 static enum status read_yes(const struct place *place, const char *key, const char *text,
@@ -194,7 +190,7 @@ static char *next_item(char **list)
     char *item = strsep(list, ",");
     if (item != NULL) {
         item += strspn(item, " \t");
-        item[ini_trimmed(item, strlen(item))] = '\0';
+        ini_trim(item);
     }
     return item;
 }
@@ -319,14 +315,11 @@ enum status place_check_units(const struct place *place, const struct scene_key 
 /* Read the unit of a file, which the section must name by one of its keys. */
 static enum status read_unit(const struct place *place, const char *key, const char *text, double *metres)
 {
-    struct error why;
     if (!place_has(place, "table") && !place_has(place, "fibres") && !place_has(place, "points") &&
         !place_has(place, "rigid")) {
         return place_forbid(place, key, "it is the unit of a file, and none is named");
     }
-    return parse_length_unit(text, key, metres, &why) == STATUS_OK
-               ? STATUS_OK
-               : place_fail(place, key, "'%s' is none of m, cm, mm, um", text);
+    return fail_at(place, key, parse_length_unit(text, key, metres, place->error));
 }
 
 static enum status read_curve(const struct place *place, const char *text, struct scene_curve *curve)
@@ -370,7 +363,7 @@ enum status place_read(const struct place *place, const struct scene_key *key, i
     case VALUE_DIM:
         return read_dim(place, key->name, text, value);
     case VALUE_COUNT:
-        return read_count(place, key->name, text, key->most, value);
+        return read_count(place, key->name, text, 1, key->most, value);
     case VALUE_CHOICE:
         return read_choice(place, key->name, text, key->words, value);
     case VALUE_YES:
