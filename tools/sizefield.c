@@ -84,10 +84,9 @@ static enum status layered_make(const struct cells *cells, const struct size_fie
                                 struct layered *layered, struct error *error)
 {
     int dim = cells->dim;
-    SCRATCH int32_t *outer = NULL; /* node_count: number of the moved node; 0: none */
     const struct faces *boundary = &field->boundary;
     *layered = (struct layered){.cells = {.dim = dim, .node_count = cells->node_count}};
-    RETURN_IF_ERROR(NEW_ARRAY(&outer, cells->node_count, error));
+    NEW_SCRATCH(int32_t, outer, cells->node_count, error); /* node_count: number of the moved node; 0: none */
     RETURN_IF_ERROR(NEW_ARRAY(&layered->x, 2 * cells->node_count * dim, error));
     RETURN_IF_ERROR(NEW_ARRAY(&layered->size, 2 * cells->node_count, error));
     RETURN_IF_ERROR(

@@ -95,12 +95,11 @@ static enum status put_sets(struct cut_body *whole, const bool *edge, const int3
 {
     struct names *names = &whole->sets.names;
     int64_t own = find_edge(whole), room = 0, count = 0, lists = 0;
-    SCRATCH int64_t *ptr = NULL;
     SCRATCH int32_t *idx = NULL;
     SCRATCH char *text = NULL;
     bool any = whole->report->edge > 0;
     NEW_SCRATCH(bool, in, node_count, error);
-    RETURN_IF_ERROR(NEW_ARRAY(&ptr, names->count + 2, error));
+    NEW_SCRATCH(int64_t, ptr, names->count + 2, error);
     for (int64_t s = 0; s < names->count + any; s++) {
         if (s == own) {
             continue;

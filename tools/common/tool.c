@@ -254,18 +254,15 @@ void tool_write(const struct tool *tool, struct stream *stream)
     tool_copy(tool, stream);
 }
 
-static enum status write_output(const struct tool *tool, const struct stream *stream, struct error *error)
-{
-    struct output output;
-    RETURN_IF_ERROR(output_open_stream(&output, tool, false, error));
-    return output_end(&output, stream_write(stream, output.file, tool->text, error), error);
-}
-
 /* The first of several processes writes; all get its status. */
 void tool_copy(const struct tool *tool, const struct stream *stream)
 {
     struct error error = {""};
-    enum status status = process_speaks() ? write_output(tool, stream, &error) : STATUS_OK;
+    struct output output;
+    enum status status = process_speaks() ? output_open_stream(&output, tool, false, &error) : STATUS_OK;
+    if (process_speaks() && status == STATUS_OK) {
+        status = output_end(&output, stream_write(stream, output.file, tool->text, &error), &error);
+    }
     tool_check(tool, (enum status)ranks_most(process_ranks(), (int64_t)status), &error);
 }
 

@@ -14,12 +14,6 @@ void image_map(const double *m, const double x[3], double place[3])
     }
 }
 
-static double cofactor(double m[3][4], int r, int c)
-{
-    int r1 = (r + 1) % 3, r2 = (r + 2) % 3, c1 = (c + 1) % 3, c2 = (c + 2) % 3;
-    return m[r1][c1] * m[r2][c2] - m[r1][c2] * m[r2][c1];
-}
-
 static double column_length(double m[3][4], int c)
 {
     return sqrt(m[0][c] * m[0][c] + m[1][c] * m[1][c] + m[2][c] * m[2][c]);
@@ -122,7 +116,8 @@ static void complete_slice(double m[3][4])
     }
     double across[3], length = 0;
     for (int i = 0; i < 3; i++) {
-        across[i] = cofactor(m, i, 2);
+        int next = (i + 1) % 3, last = (i + 2) % 3;
+        across[i] = m[next][0] * m[last][1] - m[next][1] * m[last][0];
         length += across[i] * across[i];
     }
     for (int i = 0; i < 3 && length > 0; i++) {
@@ -171,13 +166,6 @@ enum status image_place(struct image *image, double matrix[3][4], const char *fo
     return STATUS_OK;
 }
 
-static void from_sizes(const struct nifti *header, double m[3][4])
-{
-    for (int i = 0; i < 3; i++) {
-        m[i][i] = fabs(header->pixdim[1 + i]);
-    }
-}
-
 enum status nifti_space(const struct nifti *header, struct image *image, struct error *error)
 {
     static const double unit[] = {1e-3, 1, 1e-3, 1e-6};
@@ -201,7 +189,9 @@ enum status nifti_space(const struct nifti *header, struct image *image, struct 
         from_qform(header, matrix);
         image->space = (int)header->qform;
     } else {
-        from_sizes(header, matrix);
+        for (int i = 0; i < 3; i++) {
+            matrix[i][i] = fabs(header->pixdim[1 + i]);
+        }
         image_note(image, "has neither sform nor qform: first voxel at the origin, axes taken to be RAS");
     }
     if (header->sform > 0 && header->qform > 0) {

@@ -98,10 +98,13 @@ static enum status set_origin(void *context, const struct text_header *header, s
                : header_fail(header, "a vector (X,Y,Z) of the space is expected", error);
 }
 
-/* Take words in quotes, each a unit of length; "" is mm. */
-static enum status take_units(const struct text_header *header, int64_t count, double *unit,
-                              struct error *error)
+/* Words in quotes, each a unit of length; "" is mm: of the axes of the space or of the array. */
+static enum status set_units(void *context, const struct text_header *header, struct error *error)
 {
+    struct nrrd *nrrd = context;
+    bool of_space = header_is("space units", header->key);
+    int64_t count = of_space ? nrrd->space_dimension : nrrd->dimension;
+    double *unit = of_space ? nrrd->unit : nrrd->length;
     const char *at = header->value;
     for (int i = 0; i < count; i++) {
         char word[16];
@@ -119,17 +122,6 @@ static enum status take_units(const struct text_header *header, int64_t count, d
         }
     }
     return STATUS_OK;
-}
-
-static enum status set_space_units(void *context, const struct text_header *header, struct error *error)
-{
-    return take_units(header, ((struct nrrd *)context)->space_dimension, ((struct nrrd *)context)->unit,
-                      error);
-}
-
-static enum status set_units(void *context, const struct text_header *header, struct error *error)
-{
-    return take_units(header, ((struct nrrd *)context)->dimension, ((struct nrrd *)context)->length, error);
 }
 
 /* Kinds that are not here are lists of values. */
@@ -179,7 +171,7 @@ static const struct header_field fields[] = {
     {"space", .set = set_space},
     {"centers|centerings", .set = set_centers},
     {"space directions", .set = set_directions},
-    {"space units", .set = set_space_units},
+    {"space units", .set = set_units},
     {"units", .set = set_units},
     {"kinds", .set = set_kinds},
     {"encoding", HEADER_WORD, AT(encoding), .words = "raw gzip|gz ascii|text|txt"},

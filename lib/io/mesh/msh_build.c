@@ -258,15 +258,12 @@ static enum status check_coincident(struct mesh_draft *draft)
     const struct mesh *mesh = draft->mesh;
     struct box box = box_of(mesh->dim, mesh->node_count, mesh->x);
     double tolerance = ROUND_OFF * box_side(&box);
-    SCRATCH struct placed *order = NULL;
-    SCRATCH int32_t *body = NULL;
-    SCRATCH bool *slit = NULL;
     int64_t touching = 0, doubled = 0;
-    RETURN_IF_ERROR(NEW_ARRAY(&body, mesh->node_count, draft->error));
+    NEW_SCRATCH(int32_t, body, mesh->node_count, draft->error);
     set_join_cells(mesh->node_count, mesh->cell_count, mesh->dim + 1, mesh->cells, body);
-    RETURN_IF_ERROR(NEW_ARRAY(&slit, mesh->node_count, draft->error));
+    NEW_SCRATCH(bool, slit, mesh->node_count, draft->error);
     mark_slits(draft, slit);
-    RETURN_IF_ERROR(NEW_ARRAY(&order, mesh->node_count, draft->error));
+    NEW_SCRATCH(struct placed, order, mesh->node_count, draft->error);
     for (int64_t n = 0; n < mesh->node_count; n++) {
         order[n].item = n;
         for (int k = 0; k < mesh->dim; k++) {

@@ -7,8 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Number of bytes that identify a mesh of gmsh, and any. */
-#define MAGIC_SIZE 12
+/* Number of bytes that identify a mesh. */
 #define HEAD_SIZE 65536
 
 /* ---- what the file is ---- */
@@ -16,12 +15,6 @@
 static bool is_end_of_line(char c)
 {
     return c == '\n' || c == '\r';
-}
-
-static bool is_mesh(const char *bytes, size_t size)
-{
-    return size >= MAGIC_SIZE &&
-           (memcmp(bytes, "$MeshFormat", 11) == 0 || memcmp(bytes, "$Comments", 9) == 0);
 }
 
 /* MSH 1 has no $MeshFormat. */
@@ -195,35 +188,22 @@ static bool is_xml(const char *bytes, size_t size, const char *element)
     return first != NULL && first - head < 4 && memmem(head, count, element, strlen(element)) != NULL;
 }
 
-static bool is_febio(const char *bytes, size_t size)
-{
-    return is_xml(bytes, size, "<febio_spec");
-}
-
-static bool is_vtu(const char *bytes, size_t size)
-{
-    return is_xml(bytes, size, "<VTKFile");
-}
-
-static bool is_vtk(const char *bytes, size_t size)
-{
-    return size > 14 && memcmp(bytes, "# vtk DataFile", 14) == 0;
-}
-
+/* The formats: the file begins so, is in XML with such an element, or (neither) is a deck. */
 static const struct format {
-    bool (*is_it)(const char *bytes, size_t size);
+    const char *begin, *element;
     void (*read)(struct msh_reader *reader);
-} formats[] = {{is_mesh, read_sections},
-               {is_deck, inp_read},
-               {is_febio, feb_read},
-               {is_vtu, vtu_read},
-               {is_vtk, vtk_read}};
+} formats[] = {{"$MeshFormat", NULL, read_sections}, {"$Comments", NULL, read_sections},
+               {"# vtk DataFile", NULL, vtk_read},   {NULL, "<febio_spec", feb_read},
+               {NULL, "<VTKFile", vtu_read},         {NULL, NULL, inp_read}};
 
 /* The format that a file of these first bytes has, or NULL. */
 static const struct format *find_format(const char *bytes, size_t size)
 {
     for (size_t i = 0; i < sizeof formats / sizeof *formats; i++) {
-        if (formats[i].is_it(bytes, size)) {
+        const char *begin = formats[i].begin, *element = formats[i].element;
+        if (begin != NULL     ? size > strlen(begin) && memcmp(bytes, begin, strlen(begin)) == 0
+            : element != NULL ? is_xml(bytes, size, element)
+                              : is_deck(bytes, size)) {
             return &formats[i];
         }
     }

@@ -89,9 +89,8 @@ static void key_cell(const struct mesh_draft *draft, int64_t element, struct key
 static enum status find_cells(struct mesh_draft *draft, bool is_cell[])
 {
     const struct msh *msh = draft->msh;
-    SCRATCH struct keyed_cell *keys = NULL;
     int64_t count = 0, again = 0;
-    RETURN_IF_ERROR(NEW_ARRAY(&keys, msh->element_count, draft->error));
+    NEW_SCRATCH(struct keyed_cell, keys, msh->element_count, draft->error);
     for (int64_t e = 0; e < msh->element_count; e++) {
         is_cell[e] = mesh_element_dim(draft, e) == draft->mesh->dim;
         if (is_cell[e]) {
@@ -162,12 +161,9 @@ static enum status name_regions(struct mesh_draft *draft, const int64_t cells_of
 enum status mesh_pick_regions(struct mesh_draft *draft)
 {
     const struct msh *msh = draft->msh;
-    SCRATCH int32_t *region_of_group = NULL; /* the last is for cells without a group */
-    SCRATCH int64_t *cells_of = NULL;
-    SCRATCH bool *is_cell = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&region_of_group, msh->group_count + 1, draft->error));
-    RETURN_IF_ERROR(NEW_ARRAY(&cells_of, msh->group_count + 1, draft->error));
-    RETURN_IF_ERROR(NEW_ARRAY(&is_cell, msh->element_count, draft->error));
+    NEW_SCRATCH(int32_t, region_of_group, msh->group_count + 1, draft->error); /* the last is for cells without a group */
+    NEW_SCRATCH(int64_t, cells_of, msh->group_count + 1, draft->error);
+    NEW_SCRATCH(bool, is_cell, msh->element_count, draft->error);
     RETURN_IF_ERROR(NEW_ARRAY(&draft->region_of, msh->element_count, draft->error));
     RETURN_IF_ERROR(find_cells(draft, is_cell));
     for (int64_t e = 0; e < msh->element_count; e++) {

@@ -7,11 +7,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* An array whose data are appended. */
-struct appended {
+/* An array that is to be read. */
+struct vtu_array {
     struct vtk_array array;
-    const struct vtk_type *type;
-    int64_t offset, expected;
+    const struct vtk_type *type; /* NULL: it is not read */
+    int64_t offset, expected;    /* numbers, -1: as many as there are */
 };
 
 struct vtu {
@@ -19,14 +19,11 @@ struct vtu {
     char section[64]; /* "CellData" */
     int pieces;
     bool swap, compressed;
-    int word; /* bytes of the numbers of heads */
-    /* the array at hand */
-    struct vtk_array array;
-    const struct vtk_type *type; /* NULL: it is not read */
+    int word;            /* bytes of the numbers of heads */
+    struct vtu_array at; /* at hand */
     char format[16];
-    int64_t offset, expected; /* numbers, -1: as many as there are */
     int64_t appended_count, appended_room;
-    struct appended *appended;
+    struct vtu_array *appended;
 };
 
 static int64_t number_of(struct vtu *u, const char **attributes, const char *name, int64_t otherwise)
@@ -70,7 +67,8 @@ static void find_kind(struct vtu *u, const char **attributes)
                  {"Cells", "offsets", VTK_OFFSETS}, {"Cells", "types", VTK_TYPES},
                  {"CellData", NULL, VTK_OF_CELLS},  {"PointData", NULL, VTK_OF_POINTS},
                  {"FieldData", NULL, VTK_OF_FIELD}};
-    int64_t points = u->v.point_count * u->array.components, cells = u->v.cell_count * u->array.components;
+    int64_t points = u->v.point_count * u->at.array.components,
+            cells = u->v.cell_count * u->at.array.components;
     const int64_t expected[] = {-1,
                                 points,
                                 -1,
@@ -78,15 +76,15 @@ static void find_kind(struct vtu *u, const char **attributes)
                                 u->v.cell_count,
                                 cells,
                                 points,
-                                u->array.components * number_of(u, attributes, "NumberOfTuples", 1)};
-    u->array.kind = VTK_OTHER;
+                                u->at.array.components * number_of(u, attributes, "NumberOfTuples", 1)};
+    u->at.array.kind = VTK_OTHER;
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
         if (strcmp(u->section, kinds[i].section) == 0 &&
-            (kinds[i].name == NULL || strcmp(u->array.name, kinds[i].name) == 0)) {
-            u->array.kind = kinds[i].kind;
+            (kinds[i].name == NULL || strcmp(u->at.array.name, kinds[i].name) == 0)) {
+            u->at.array.kind = kinds[i].kind;
         }
     }
-    u->expected = expected[u->array.kind];
+    u->at.expected = expected[u->at.array.kind];
 }
 
 static void begin_array(struct vtu *u, const char **attributes)
@@ -94,21 +92,23 @@ static void begin_array(struct vtu *u, const char **attributes)
     struct msh_reader *r = u->v.r;
     const char *name = xml_attribute(attributes, "Name"), *type = xml_attribute(attributes, "type"),
                *format = xml_attribute(attributes, "format");
-    if (snprintf(u->array.name, sizeof u->array.name, "%s", name != NULL ? name : u->section) > INPUT_NAME) {
+    if (snprintf(u->at.array.name, sizeof u->at.array.name, "%s", name != NULL ? name : u->section) >
+        INPUT_NAME) {
         msh_fail(r, "the name '%.40s...' is longer than %d bytes", name, INPUT_NAME);
     }
     snprintf(u->format, sizeof u->format, "%s", format != NULL ? format : "ascii");
-    u->array.components = number_of(u, attributes, "NumberOfComponents", 1);
-    u->array.components += u->array.components == 0;
+    u->at.array.components = number_of(u, attributes, "NumberOfComponents", 1);
+    u->at.array.components += u->at.array.components == 0;
     find_kind(u, attributes);
-    u->offset = number_of(u, attributes, "offset", 0);
-    u->type = vtk_find_type(type != NULL ? type : "");
-    if (u->type == NULL && u->array.kind >= VTK_POINTS && u->array.kind <= VTK_TYPES) {
-        msh_fail(r, "%s: numbers of type '%s' are not read", u->array.name, type != NULL ? type : "");
-    } else if (u->array.kind == VTK_POINTS && u->array.components != 3) {
-        msh_fail(r, "points of %lld coordinates, not 3", (long long)u->array.components);
-    } else if (u->type != NULL && (u->array.kind == VTK_OTHER || !vtk_is_wanted(&u->v, &u->array, u->type))) {
-        u->type = NULL;
+    u->at.offset = number_of(u, attributes, "offset", 0);
+    u->at.type = vtk_find_type(type != NULL ? type : "");
+    if (u->at.type == NULL && u->at.array.kind >= VTK_POINTS && u->at.array.kind <= VTK_TYPES) {
+        msh_fail(r, "%s: numbers of type '%s' are not read", u->at.array.name, type != NULL ? type : "");
+    } else if (u->at.array.kind == VTK_POINTS && u->at.array.components != 3) {
+        msh_fail(r, "points of %lld coordinates, not 3", (long long)u->at.array.components);
+    } else if (u->at.type != NULL &&
+               (u->at.array.kind == VTK_OTHER || !vtk_is_wanted(&u->v, &u->at.array, u->at.type))) {
+        u->at.type = NULL;
     }
 }
 
@@ -138,7 +138,7 @@ static void begin(void *context, const char *name, const char **attributes, int 
 /* Most numbers of the array at hand: the nodes of a cell are at most 27. */
 static int64_t most_numbers(const struct vtu *u)
 {
-    return u->expected >= 0 ? u->expected : 27 * u->v.cell_count;
+    return u->at.expected >= 0 ? u->at.expected : 27 * u->v.cell_count;
 }
 
 /* Read the array at hand from the bytes of its source. */
@@ -146,21 +146,21 @@ static void read_binary(struct vtu *u, struct vtu_source *source)
 {
     struct msh_reader *r = u->v.r;
     int64_t size;
-    if (__builtin_mul_overflow(most_numbers(u), u->type->size, &source->most)) {
+    if (__builtin_mul_overflow(most_numbers(u), u->at.type->size, &source->most)) {
         source->most = INT64_MAX;
     }
     SCRATCH char *bytes = vtu_bytes(r, source, &size);
     if (bytes == NULL) {
         return;
     }
-    int64_t count = u->expected < 0 ? size / u->type->size : u->expected;
-    if (count > size / u->type->size || count * u->type->size != size) {
-        msh_fail(r, "%s: %lld bytes, not %lld numbers of %d", u->array.name, (long long)size,
-                 (long long)count, u->type->size);
+    int64_t count = u->at.expected < 0 ? size / u->at.type->size : u->at.expected;
+    if (count > size / u->at.type->size || count * u->at.type->size != size) {
+        msh_fail(r, "%s: %lld bytes, not %lld numbers of %d", u->at.array.name, (long long)size,
+                 (long long)count, u->at.type->size);
     }
-    struct vtk_array *array = vtk_add(&u->v, &u->array, count);
+    struct vtk_array *array = vtk_add(&u->v, &u->at.array, count);
     if (array != NULL) {
-        vtk_fill_binary(array, u->type, u->swap, bytes);
+        vtk_fill_binary(array, u->at.type, u->swap, bytes);
     }
 }
 
@@ -172,10 +172,11 @@ static void read_text(struct vtu *u, const char *text, const char *end)
     while (input_word(&at, end, ',', &length) != NULL) {
         count++;
     }
-    if (u->expected >= 0 && count != u->expected) {
-        msh_fail(r, "%s: %lld numbers, not %lld", u->array.name, (long long)count, (long long)u->expected);
+    if (u->at.expected >= 0 && count != u->at.expected) {
+        msh_fail(r, "%s: %lld numbers, not %lld", u->at.array.name, (long long)count,
+                 (long long)u->at.expected);
     }
-    struct vtk_array *array = vtk_add(&u->v, &u->array, count);
+    struct vtk_array *array = vtk_add(&u->v, &u->at.array, count);
     if (array != NULL) {
         vtk_fill_text(r, array, &text, end);
     }
@@ -186,7 +187,7 @@ static void end(void *context, const char *name, const char *text, int64_t size,
     struct vtu *u = context;
     struct msh_reader *r = u->v.r;
     (void)depth;
-    if (strcmp(name, "DataArray") != 0 || u->type == NULL) {
+    if (strcmp(name, "DataArray") != 0 || u->at.type == NULL) {
         return;
     }
     if (strcmp(u->format, "ascii") == 0) {
@@ -196,12 +197,12 @@ static void end(void *context, const char *name, const char *text, int64_t size,
     } else if (strcmp(u->format, "appended") == 0) {
         MSH_GROW(r, &u->appended, u->appended_count + 1, &u->appended_room);
         if (r->status == STATUS_OK) {
-            u->appended[u->appended_count++] = (struct appended){u->array, u->type, u->offset, u->expected};
+            u->appended[u->appended_count++] = u->at;
         }
     } else {
-        msh_fail(r, "%s: format '%s' is none of ascii, binary, appended", u->array.name, u->format);
+        msh_fail(r, "%s: format '%s' is none of ascii, binary, appended", u->at.array.name, u->format);
     }
-    u->type = NULL;
+    u->at.type = NULL;
 }
 
 /* Read the appended data: behind the tag, which may be followed by blanks, and '_'. */
@@ -220,21 +221,19 @@ static void read_appended(struct vtu *u)
     bool base64 = r->status == STATUS_OK && memmem(tag, (size_t)(close - tag), "base64", 6) != NULL;
     int64_t left = r->end - data; /* arrays do not share their bytes: they would be more than the file */
     for (int64_t i = 0; r->status == STATUS_OK && i < u->appended_count; i++) {
-        u->array = u->appended[i].array;
-        u->type = u->appended[i].type;
-        u->expected = u->appended[i].expected;
-        if (u->appended[i].offset > r->end - data - 1) {
-            msh_fail(r, "%s: its offset %lld is behind the end of the file: it is truncated", u->array.name,
-                     (long long)u->appended[i].offset);
+        u->at = u->appended[i];
+        if (u->at.offset > r->end - data - 1) {
+            msh_fail(r, "%s: its offset %lld is behind the end of the file: it is truncated",
+                     u->at.array.name, (long long)u->at.offset);
             break;
         }
-        struct vtu_source source = {
-            data + 1 + u->appended[i].offset, r->end, base64, u->swap, u->compressed, u->word, 0, 0};
+        struct vtu_source source = {data + 1 + u->at.offset, r->end,  base64, u->swap,
+                                    u->compressed,           u->word, 0,      0};
         read_binary(u, &source);
         left -= source.taken;
         if (left < 0) {
             msh_fail(r, "%s: the arrays together are larger than the file: their offsets are damaged",
-                     u->array.name);
+                     u->at.array.name);
         }
     }
 }

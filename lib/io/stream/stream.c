@@ -49,20 +49,12 @@ void stream_free(struct stream *stream)
     stream_init(stream);
 }
 
-static bool is_letter(char c)
-{
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
-}
+#define LETTERS "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
 
 /* The length of the name or key at `text`: a letter, then letters, digits, '.', '_', '-'. */
 static size_t word_length(const char *text)
 {
-    size_t length = 0;
-    while (is_letter(text[length]) ||
-           (length > 0 && text[length] != '\0' && strchr("0123456789._-", text[length]) != NULL)) {
-        length++;
-    }
-    return length;
+    return strspn(text, LETTERS) > 0 ? strspn(text, LETTERS "0123456789._-") : 0;
 }
 
 static enum status name_validate(const char *name, struct error *error)
@@ -315,7 +307,7 @@ static bool has_control(const char *text)
  * end. */
 static char *put_quoted(char *at, const char *argument)
 {
-    static const char safe[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_@%+=:,./-";
+    static const char safe[] = LETTERS "0123456789_@%+=:,./-";
     bool escaped = has_control(argument);
     if (argument[0] != '\0' && argument[strspn(argument, safe)] == '\0') {
         return stpcpy(at, argument);

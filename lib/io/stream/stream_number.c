@@ -8,11 +8,6 @@
 #include <string.h>
 #include <strings.h>
 
-static bool is_digit(char c)
-{
-    return c >= '0' && c <= '9';
-}
-
 static bool ends_number(const char *at, const char *end)
 {
     return at == end || *at == ' ' || *at == '\t' || *at == '\n';
@@ -23,7 +18,7 @@ const char *number_parse_integer(const char *at, const char *end, int64_t least,
     bool negative = at < end && *at == '-';
     const char *digits = at + (at < end && (*at == '-' || *at == '+'));
     uint64_t magnitude = 0;
-    for (at = digits; at < end && is_digit(*at); at++) {
+    for (at = digits; at < end && *at >= '0' && *at <= '9'; at++) {
         if (__builtin_mul_overflow(magnitude, (uint64_t)10, &magnitude) ||
             __builtin_add_overflow(magnitude, (uint64_t)(*at - '0'), &magnitude)) {
             return NULL;

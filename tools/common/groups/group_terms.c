@@ -199,19 +199,10 @@ static enum status choose_by(const struct term *term, enum group_kind from, cons
     return STATUS_OK;
 }
 
-static enum status choose_all(const struct term *term)
-{
-    for (int64_t i = 0; i < term->body->items[term->kind].count; i++) {
-        term->chosen[i] = true;
-    }
-    return STATUS_OK;
-}
-
 /* Choose the whole boundary, or the nodes on it. */
 static enum status choose_boundary(const struct term *term)
 {
-    SCRATCH bool *facets = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&facets, term->body->boundary.count, term->error));
+    NEW_SCRATCH(bool, facets, term->body->boundary.count, term->error);
     memset(facets, true, (size_t)term->body->boundary.count * sizeof *facets);
     return choose_by(term, GROUP_FACETS, facets);
 }
@@ -229,10 +220,9 @@ static enum status check_degrees(const struct term *term, double degrees)
 static enum status choose_normal(const struct term *term)
 {
     int dim = term->body->cells.dim;
-    SCRATCH bool *facing = NULL;
     RETURN_IF_ERROR(check_direction(term, term->value));
     RETURN_IF_ERROR(check_degrees(term, term->value[dim]));
-    RETURN_IF_ERROR(NEW_ARRAY(&facing, term->body->boundary.count, term->error));
+    NEW_SCRATCH(bool, facing, term->body->boundary.count, term->error);
     items_facing(&term->body->items[GROUP_FACETS], term->value, term->value[dim], facing);
     return choose_by(term, GROUP_FACETS, facing);
 }
@@ -264,12 +254,10 @@ static enum status choose_part(const struct term *term)
     bool by_point = term->count == dim + side;
     double point[3];
     int32_t parts;
-    SCRATCH int32_t *part = NULL;
-    SCRATCH bool *in = NULL;
     double degrees = side ? term->value[term->count - 1] : 0, number = term->value[0];
     RETURN_IF_ERROR(check_degrees(term, degrees));
-    RETURN_IF_ERROR(NEW_ARRAY(&part, items->count, term->error));
-    RETURN_IF_ERROR(NEW_ARRAY(&in, items->count, term->error));
+    NEW_SCRATCH(int32_t, part, items->count, term->error);
+    NEW_SCRATCH(bool, in, items->count, term->error);
     RETURN_IF_ERROR(side ? boundary_sides(body->cells.x, &body->boundary, degrees, part, &parts, term->error)
                          : cells_parts(&body->cells, part, &parts, term->error));
     if (!by_point && !(number >= 1 && number <= parts && number == floor(number))) {
@@ -300,11 +288,10 @@ static enum status choose_named(const struct term *term, enum group_kind from, c
     const struct group_list *list = &term->body->groups[from];
     const struct items *items = &term->body->items[from];
     int64_t place = names_find(&list->names, name);
-    SCRATCH bool *in = NULL;
     if (place < 0) {
         return fail_unknown(term, from);
     }
-    RETURN_IF_ERROR(NEW_ARRAY(&in, items->count, term->error));
+    NEW_SCRATCH(bool, in, items->count, term->error);
     for (int64_t i = 0; i < list->count; i++) {
         in[list->member[i].item] |= list->member[i].group == place;
     }
@@ -358,7 +345,8 @@ enum status group_term(const struct group_body *body, enum group_kind kind, cons
         .body = body, .kind = kind, .text = text, .unit = unit, .chosen = chosen, .error = error};
     term.arguments = text + length + (text[length] == ':');
     if (strcmp(text, "all") == 0) {
-        return choose_all(&term);
+        memset(chosen, true, (size_t)body->items[kind].count * sizeof *chosen);
+        return STATUS_OK;
     }
     if (strcmp(text, "boundary") == 0) {
         return choose_boundary(&term);
