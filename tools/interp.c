@@ -52,7 +52,7 @@ static const char usage[] =
 
 #include "approx/field/field.h"
 #include "io/stream/sections.h"
-#include "io/files/descriptor.h"
+#include "io/files/textfile.h"
 #include "io/files/landmarks.h"
 
 #include <stdlib.h>

@@ -41,7 +41,7 @@ static const char usage[] =
 #include "tool.h"
 
 #include "cell_report.h"
-#include "io/files/descriptor.h"
+#include "io/files/textfile.h"
 #include "stages/stages.h"
 
 #include <fnmatch.h>

@@ -53,7 +53,7 @@ static const char usage[] =
     "  gmsh -2 brain2d.geo -o body.msh && nodes -u mm body.msh | mts list\n";
 
 #include "cell_report.h"
-#include "io/files/descriptor.h"
+#include "io/files/textfile.h"
 #include "io/mesh/msh.h"
 #include "tool.h"
 

@@ -56,7 +56,6 @@ static const char usage[] =
     "  nodes -u mm heart.msh | sample --vector dti.nii.gz - | mtled heart.scene > u.dat\n"
     "  sample --tissue 3000,0.49 --tissue 9000,0.49 white.nii.gz tumour.nii.gz table.mts > stiffness.tsv\n";
 
-#include "images/image_body.h"
 #include "images/images.h"
 #include "sample/sample_points.h"
 #include "output.h"
@@ -65,7 +64,6 @@ static const char usage[] =
 
 #include "base/axis.h"
 #include "base/box.h"
-#include "io/image/image_sample.h"
 
 #include <float.h>
 #include <math.h>

@@ -52,13 +52,11 @@ static const char usage[] =
     "  warp --field -o field.nrrd T1.nrrd u.dat\n"
     "  plastimatch warp --input T1.nrrd --xf field.nrrd --output-img predicted.nrrd\n";
 
-#include "images/image_body.h"
 #include "images/images.h"
 #include "stages/stages.h"
 #include "warp/warp_voxels.h"
 
 #include "approx/field/motion.h"
-#include "io/image/image_sample.h"
 
 #include <float.h>
 #include <math.h>
@@ -223,8 +221,8 @@ static void check_values(const struct tool *tool, const struct image *image, con
 }
 
 /* Make the result, all zero: an image like the source on the grid of another one, or the field there. */
-static void new_result(const struct tool *tool, const struct warp_request *request,
-                       struct image *source, const struct image *grid, struct image *result)
+static void new_result(const struct tool *tool, const struct warp_request *request, struct image *source,
+                       const struct image *grid, struct image *result)
 {
     TOOL_TRY(tool, image_new(result, grid->size, request->field ? 3 : source->components, &error));
     double *values = result->values;

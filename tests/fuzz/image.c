@@ -1,7 +1,7 @@
 /* Fuzz target: images. What is read is consistent in itself, can be sampled, and is written and read back. */
 #include "fuzz.h"
 
-#include "io/image/image_sample.h"
+#include "io/image/image.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 /* Values between voxels: the nearest, at the border, and none outside (more: warp.bats, sample.bats). */
 #include "unit.h"
 
-#include "io/image/image_sample.h"
+#include "io/image/image.h"
 
 static struct image image;
 

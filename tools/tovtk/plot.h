@@ -1,9 +1,9 @@
 /* The mesh, fields and frames that tovtk writes of a stream. */
 #pragma once
 
-#include "tovtk/derived.h"
 #include "io/stream/sections.h"
 #include "io/vtk/vtk.h"
+#include "stages/views.h"
 
 struct plot {
     struct stream stream;

@@ -1,10 +1,9 @@
 /* The loop over the voxels of a moved image, or of the field as an image. */
 #pragma once
 
-#include "images/image_body.h"
+#include "images/images.h"
 
 #include "approx/field/motion.h"
-#include "io/image/image_sample.h"
 
 /* Values for voxels outside of the moved body, by their label in the image. */
 enum { WARP_MOST_LABELS = 256 };

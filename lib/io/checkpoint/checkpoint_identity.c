@@ -2,7 +2,7 @@
 #include "io/checkpoint/checkpoint.h"
 
 #include "base/memory.h"
-#include "io/files/descriptor.h"
+#include "io/files/textfile.h"
 
 #include <errno.h>
 #include <fcntl.h>

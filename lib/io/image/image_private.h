@@ -83,11 +83,6 @@ MUST_CHECK enum status image_values_read(struct image_bytes *file, const struct 
  * a layer that is not there, and two segments of one label. */
 MUST_CHECK enum status image_segments_merge(struct image *image, struct error *error);
 
-/* Print the header of an image whose values are little-endian: in a file of their own, raw; or (NULL) behind
- * it, compressed by gzip in an NRRD file. */
-void nrrd_print(const struct image *image, const char *data_file, FILE *file);
-void metaimage_print(const struct image *image, const char *data_file, FILE *file);
-
 /* The version and byte order of a header, from its first 4 bytes; 0: not a header. */
 int nifti_version(const unsigned char *bytes, bool *swapped);
 

@@ -4,7 +4,7 @@
 #include "io/image/text_header.h"
 
 #include "base/memory.h"
-#include "io/files/descriptor.h"
+#include "io/files/textfile.h"
 
 #include <errno.h>
 #include <fcntl.h>

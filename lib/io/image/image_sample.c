@@ -1,5 +1,5 @@
 #include "base/round_off.h"
-#include "io/image/image_sample.h"
+#include "io/image/image.h"
 
 #include <math.h>
 #include <stdint.h>

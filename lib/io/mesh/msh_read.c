@@ -1,5 +1,5 @@
 #include "base/memory.h"
-#include "io/files/descriptor.h"
+#include "io/files/textfile.h"
 #include "io/mesh/msh_private.h"
 
 #include <ctype.h>

@@ -2,7 +2,7 @@
 
 #include "base/memory.h"
 #include "io/scene/scene_ini.h"
-#include "io/scene/scene_kinds.h"
+#include "io/scene/scene_private.h"
 
 #include <string.h>
 

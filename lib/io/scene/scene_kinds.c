@@ -1,4 +1,4 @@
-#include "io/scene/scene_kinds.h"
+#include "io/scene/scene_private.h"
 
 #include <math.h>
 #include <stdbool.h>

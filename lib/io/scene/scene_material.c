@@ -1,5 +1,5 @@
 /* The section [material NAME]: its law, the parameters of this, and the moduli at rest. */
-#include "io/scene/scene_kinds.h"
+#include "io/scene/scene_private.h"
 
 #include <math.h>
 #include <string.h>

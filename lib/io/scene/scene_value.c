@@ -1,4 +1,4 @@
-#include "io/scene/scene_value.h"
+#include "io/scene/scene_private.h"
 
 #include "base/memory.h"
 #include "base/options.h"

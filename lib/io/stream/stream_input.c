@@ -1,5 +1,5 @@
 /* The bytes of a stream: a regular file is mapped, everything else is read into a mapping of its own. */
-#include "io/files/descriptor.h"
+#include "io/files/textfile.h"
 #include "io/stream/stream_private.h"
 
 #include <fcntl.h>

@@ -54,29 +54,14 @@ static inline bool starts_with(const char *line, size_t length, const char *pref
     return length >= size && memcmp(line, prefix, size) == 0;
 }
 
-/* stream_header.c: a header line taken apart; the words lie in `copy`. */
-struct header {
-    char *copy;
-    const char *name;
-    enum element_type type;
-    int64_t rows, cols;
-    char *attributes; /* without enc= */
-    bool binary;
-};
-
-/* Parse and check a line without its newline; to be freed, also on failure. */
-MUST_CHECK enum status header_parse(const char *line, size_t length, struct header *header,
-                                    struct error *error);
-void header_free(struct header *header);
-
-/* stream_payload.c: read rows of text and the two blank lines behind. The section owns what was read, also on
+/* stream_text.c: read rows of text and the two blank lines behind. The section owns what was read, also on
  * failure. */
 MUST_CHECK enum status payload_read_text(struct input *input, struct section *section, struct error *error);
 
-/* stream_payload.c: the error of an input that ends in this row. */
+/* stream_text.c: the error of an input that ends in this row. */
 enum status fail_short(const struct section *section, int64_t row, struct error *error);
 
-/* stream_number.c: parse one number that ends at a blank, a line end or `end`. Returns the byte behind it, or
+/* stream_text.c: parse one number that ends at a blank, a line end or `end`. Returns the byte behind it, or
  * NULL if it is not a number of that type, or out of range. These functions need the C locale. */
 const char *number_parse_integer(const char *at, const char *end, int64_t least, int64_t most,
                                  int64_t *value);

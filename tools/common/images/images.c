@@ -1,8 +1,12 @@
 #include "images/images.h"
 
-#include "io/files/descriptor.h"
+#include "approx/cells/raster.h"
+#include "base/box.h"
+#include "base/vector.h"
+#include "io/files/textfile.h"
 #include "output.h"
 
+#include <math.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -108,4 +112,169 @@ const char *image_text(const struct image *image, char text[128])
              image->size[2], 1e3 * image_step(image, 0), 1e3 * image_step(image, 1),
              1e3 * image_step(image, 2));
     return text;
+}
+
+/* ---- a body and the voxels of an image ---- */
+
+static const double most_ratio = 100; /* body to image */
+
+/* The world axis to which voxel axes a and b are perpendicular; -1: none. */
+static int axis_across(const struct image *image, int a, int b)
+{
+    for (int w = 0; w < 3; w++) {
+        bool across = true;
+        for (int c = a; c <= b; c += b - a) {
+            across = across && fabs(image->to_world[w][c]) <= 1e-4 * image_step(image, c);
+        }
+        if (across) {
+            return w;
+        }
+    }
+    return -1;
+}
+
+/* Bring the world and voxel axes of an image into the order of the body, or back. The voxel axis across a
+ * slice may be moved behind the others without moving values. */
+static void reorder(struct image *image, const struct image_axes *axes, bool back)
+{
+    struct image before = *image;
+    for (int r = 0; r < 3; r++) {
+        image->size[back ? axes->voxel[r] : r] = before.size[back ? r : axes->voxel[r]];
+        for (int c = 0; c < 3; c++) {
+            int world = axes->world[r], voxel = axes->voxel[c];
+            image->to_world[back ? world : r][back ? voxel : c] =
+                before.to_world[back ? r : world][back ? c : voxel];
+        }
+        image->to_world[back ? axes->world[r] : r][3] = before.to_world[back ? r : axes->world[r]][3];
+    }
+}
+
+void image_to_body(const struct tool *tool, struct image *image, int dim, struct image_axes *axes)
+{
+    *axes = (struct image_axes){{0, 1, 2}, {0, 1, 2}};
+    if (dim == 3) {
+        return;
+    }
+    int flat = image->size[2] == 1 ? 2 : image->size[1] == 1 ? 1 : 0;
+    int a = flat == 0 ? 1 : 0, b = flat == 2 ? 1 : 2, across = axis_across(image, a, b);
+    if (image->size[flat] > 1 || across < 0) {
+        tool_fail(tool, STATUS_INPUT,
+                  "the body is in 2D: it goes with an image of one slice across a world axis, not %s",
+                  image->size[flat] == 1 ? "an oblique one" : "one of several slices");
+    }
+    *axes = (struct image_axes){{across == 0 ? 1 : 0, across == 2 ? 1 : 2, across}, {a, b, flat}};
+    reorder(image, axes, false);
+}
+
+void image_from_body(struct image *image, const struct image_axes *axes)
+{
+    reorder(image, axes, true);
+}
+
+/* Determinant of the map from world coordinates to voxels in dim dimensions. */
+static double determinant(const struct image *grid, int dim)
+{
+    double m[3][4];
+    image_to_voxel(grid, m);
+    return dim == 2 ? determinant2(m[0], m[1]) : determinant3(m[0], m[1], m[2]);
+}
+
+double voxel_volume(const struct image *image, int dim)
+{
+    return 1 / fabs(determinant(image, dim));
+}
+
+double least_step(const struct image *image, int dim)
+{
+    double least = INFINITY;
+    for (int i = 0; i < dim; i++) {
+        least = fmin(least, image_step(image, i));
+    }
+    return least;
+}
+
+/* place[node_count * dim]: the nodes in voxels of the grid. */
+static double *nodes_in_voxels(const struct tool *tool, const struct image *grid, const struct cells *cells,
+                               const double *x)
+{
+    int dim = cells->dim;
+    double inverse[3][4], *place;
+    image_to_voxel(grid, inverse);
+    TOOL_TRY(tool, NEW_ARRAY(&place, cells->node_count * dim, &error));
+    for (int64_t n = 0; n < cells->node_count; n++) {
+        double world[3] = {0, 0, grid->to_world[2][3]}, voxel[3];
+        memcpy(world, x + n * dim, (size_t)dim * sizeof *x);
+        image_map(&inverse[0][0], world, voxel);
+        memcpy(place + n * dim, voxel, (size_t)dim * sizeof *place);
+    }
+    return place;
+}
+
+int32_t *find_owners(const struct tool *tool, const struct image *grid, const struct cells *cells,
+                     const double *x, int64_t *doubly)
+{
+    struct cells placed = *cells;
+    int32_t *owner;
+    const int64_t size[3] = {(int64_t)grid->size[0], (int64_t)grid->size[1], (int64_t)grid->size[2]};
+    SCRATCH double *place = nodes_in_voxels(tool, grid, cells, x);
+    int sign = determinant(grid, cells->dim) < 0 ? -1 : 1;
+    TOOL_TRY(tool, NEW_ARRAY(&owner, size[0] * size[1] * size[2], &error));
+    placed.x = place;
+    raster_cells(&placed, sign, size, owner, doubly);
+    return owner;
+}
+
+/* The box of the voxel centres, m. */
+static struct box image_box(const struct image *image)
+{
+    double corner[8][3];
+    for (int c = 0; c < 8; c++) {
+        double voxel[3];
+        for (int i = 0; i < 3; i++) {
+            voxel[i] = c >> i & 1 ? (double)image->size[i] - 1 : 0;
+        }
+        image_world(image, voxel, corner[c]);
+    }
+    return box_of(3, 8, corner[0]);
+}
+
+/* Exit if body and image do not overlap, or have impossible sizes. */
+void check_image_overlap(const struct tool *tool, const struct image *grid, const struct cells *cells,
+                         const double *x, int64_t inside)
+{
+    char body_text[128], grid_text[128];
+    struct box body = box_of(cells->dim, cells->node_count, x), box = image_box(grid);
+    box.dim = cells->dim;
+    if (box_diagonal(&body) > most_ratio * box_diagonal(&box)) {
+        tool_fail(tool, STATUS_INPUT,
+                  "the body (%s) is more than %.0f times larger than the image (%s): is its unit right?",
+                  box_text(&body, body_text), most_ratio, box_text(&box, grid_text));
+    }
+    if (inside == 0) {
+        tool_fail(tool, STATUS_INPUT,
+                  "no voxel of the image (%s) lies in the body (%s): another space, or unit?",
+                  box_text(&box, grid_text), box_text(&body, body_text));
+    }
+}
+
+void note_image_outside(const struct tool *tool, const struct image *image, const struct cells *cells,
+                        const double *x)
+{
+    int64_t outside = 0;
+    SCRATCH double *place = nodes_in_voxels(tool, image, cells, x);
+    for (int64_t n = 0; n < cells->node_count; n++) {
+        bool within = true;
+        for (int i = 0; i < cells->dim; i++) {
+            double at = place[n * cells->dim + i];
+            within = within && at >= -1 && at <= (double)image->size[i];
+        }
+        outside += within ? 0 : 1;
+    }
+    if (outside > 0) {
+        tool_note(
+            tool,
+            "%lld of %lld nodes of the body lie more than half a voxel outside of the image: it shows a "
+            "part of the body, or another unit or direction of an axis",
+            (long long)outside, (long long)cells->node_count);
+    }
 }

@@ -1,9 +1,10 @@
-/* Reading and writing images by tools. */
+/* Reading and writing images by tools; a body and the voxels of an image. */
 #pragma once
 
 #include "tool.h"
 
-#include "io/image/image_sample.h"
+#include "approx/cells/cells.h"
+#include "io/image/image.h"
 
 /* Read an image from a file ("-": standard input), and report assumptions; exits on failure. */
 void tool_read_image(const struct tool *tool, const char *file, struct image *image);
@@ -20,3 +21,36 @@ void tool_write_image(const struct tool *tool, const struct image *image);
 
 /* "181 x 217 x 181 voxels of 1 x 1 x 1 mm" into text[128]; returns it. */
 const char *image_text(const struct image *image, char text[128]);
+
+/* The world axes and voxel axes in the order of the body's axes. */
+struct image_axes {
+    int world[3], voxel[3];
+};
+
+/* Bring the axes of an image into the order of the body's axes. In 3D nothing changes. A body in 2D lies in
+ * an image of one slice across a world axis; its x and y are the other two axes, in their order. Exits for
+ * other images in 2D. */
+void image_to_body(const struct tool *tool, struct image *image, int dim, struct image_axes *axes);
+
+/* Bring the axes back into the order of the world and of the file. */
+void image_from_body(struct image *image, const struct image_axes *axes);
+
+/* For each voxel the cell that contains its centre, with the nodes at x, or -1; to be freed. *doubly: number
+ * of voxels in more than one cell. */
+int32_t *find_owners(const struct tool *tool, const struct image *grid, const struct cells *cells,
+                     const double *x, int64_t *doubly);
+
+/* Exit if no voxel is `inside` the body, or the body is much larger than the image: a unit or space is
+ * wrong. */
+void check_image_overlap(const struct tool *tool, const struct image *grid, const struct cells *cells,
+                         const double *x, int64_t inside);
+
+/* Note that the body, in the state that the image shows, lies partly outside of it. */
+void note_image_outside(const struct tool *tool, const struct image *image, const struct cells *cells,
+                        const double *x);
+
+/* Volume of a voxel, m3, or its area in the plane of the body, m2. */
+double voxel_volume(const struct image *image, int dim);
+
+/* The shortest of the first dim steps between voxels, m. */
+double least_step(const struct image *image, int dim);
