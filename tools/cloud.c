@@ -46,7 +46,6 @@ static const char usage[] =
 #include "cell_report.h"
 #include "tool.h"
 
-/* Exit if an option of another kind was given. */
 static void check_kind(const struct tool *tool, const char *option, bool applies)
 {
     if (tool_given(tool, option) && !applies) {

@@ -84,7 +84,6 @@ static void get_side(const struct tool *tool, const struct group_body *body, con
     tool_check(tool, fail_in(&error, read_side(body, text, side, &error), "--%s %s", option, text), &error);
 }
 
-/* The direction of --axis. */
 static void read_axis(const struct tool *tool, double axis[3])
 {
     const char *text = tool_value(tool, "axis");

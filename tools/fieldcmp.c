@@ -50,7 +50,6 @@ static const char usage[] =
 
 #include "comparison.h"
 
-/* Print the error of the iteration, if it is known. */
 static void print_iteration(const char *name, const struct side *side)
 {
     double error = iteration_error(side);

@@ -121,7 +121,6 @@ static const struct section *find_table(const struct side *side, const char *nam
     return section != NULL && section->type == TYPE_F8 && section->cols == cols ? section : NULL;
 }
 
-/* Print the errors of the forces of conditions and contacts in both results. */
 static enum status print_forces(const struct side *fine, const struct side *coarse, double share,
                                 struct error *error)
 {

@@ -53,7 +53,6 @@ static const char usage[] =
 /* Pieces that are smaller than this part of the body are noted. */
 static const double small_piece = 1e-3;
 
-/* PART% as a share. */
 static double parse_least(const struct tool *tool)
 {
     const char *text = tool_value(tool, "least");

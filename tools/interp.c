@@ -97,7 +97,6 @@ static struct support_options parse(const struct tool *tool, int dim)
     return support;
 }
 
-/* Read the points of a table of coordinates. */
 static void read_table(const struct tool *tool, const char *file, const char *unit_name, int dim,
                        struct points *points)
 {
@@ -120,7 +119,6 @@ static void read_table(const struct tool *tool, const char *file, const char *un
     }
 }
 
-/* Read the nodes of another stream as points. */
 static void read_nodes(const struct tool *tool, const char *file, int dim, struct points *points)
 {
     FREED_BY(stream_free) struct stream other = {0};
@@ -204,7 +202,6 @@ static enum status make_table(const struct tool *tool, const struct recorded *kn
                              file != NULL ? file : "points.x", &points->table, error);
 }
 
-/* Copy the integration points of the stream. */
 static enum status copy_points(const struct stream *stream, int dim, struct points *points,
                                struct error *error)
 {
@@ -254,7 +251,6 @@ static void put_all_fields(const struct tool *tool, const struct stream *stream,
     }
 }
 
-/* Put the fields of a list of names. */
 static void put_fields(const struct tool *tool, const struct stream *stream, int64_t node_count,
                        const char *names, const struct points *points, struct stream *output)
 {
@@ -275,7 +271,6 @@ static void put_fields(const struct tool *tool, const struct stream *stream, int
     }
 }
 
-/* Put x.deformed, the points moved by the displacement. */
 static void put_deformed(const struct tool *tool, const struct stream *stream, int dim, int64_t node_count,
                          const struct points *points, struct stream *output)
 {
@@ -293,7 +288,6 @@ static void put_deformed(const struct tool *tool, const struct stream *stream, i
              x);
 }
 
-/* Find the points, those of the stream or of a file, with supports and shape functions. */
 static void find_points(const struct tool *tool, struct stream *stream, int dim, struct points *points)
 {
     const char *file = tool_value(tool, "points");

@@ -85,7 +85,6 @@ static int print(struct tool *tool)
     return tool_end(tool);
 }
 
-/* The commands text and binary. */
 static int convert(struct tool *tool)
 {
     FREED_BY(stream_free) struct stream stream = {0};
@@ -95,7 +94,6 @@ static int convert(struct tool *tool)
     return tool_end(tool);
 }
 
-/* Report on valid cells; returns the number of violations found. */
 static int print_cells(const struct tool *tool, const struct stream *stream)
 {
     struct cells cells;
@@ -177,7 +175,6 @@ static bool matches(const char *name, char *const patterns[], int count, bool us
     return any;
 }
 
-/* The commands keep and drop. */
 static int select_sections(struct tool *tool)
 {
     enum { MOST = 64 };

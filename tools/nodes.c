@@ -114,7 +114,6 @@ static void check_joined(const struct tool *tool, const struct mesh *mesh, bool 
     }
 }
 
-/* Parse the options; exits if they exclude each other. */
 static struct mesh_options parse(const struct tool *tool)
 {
     static const char *const of_stream[] = {"unit", "regions", "verbose", "text", "output", NULL};

@@ -184,7 +184,6 @@ static void sample_image(const struct tool *tool, const struct request *request,
               rows->what, (long long)outside, (long long)rows->count, name, request->outside);
 }
 
-/* Check that all finite values are within 0 to 1, up to round-off. */
 static void check_probabilities(const struct tool *tool, const struct image *image, const char *name)
 {
     for (size_t v = 0; v < image_voxels(image); v++) {
@@ -261,7 +260,6 @@ static void sample_images(const struct tool *tool, const struct request *request
     }
 }
 
-/* Replace the values of the images by E and nu. */
 static void find_moduli(const struct tool *tool, const struct tissue *tissue, struct sample_points *rows)
 {
     double(*moduli)[2];

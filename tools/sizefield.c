@@ -140,7 +140,6 @@ static void print_view(FILE *file, const struct layered *layered, double unit)
     fprintf(file, "};\n");
 }
 
-/* Orient the cells of the layer positively, and leave out those without volume. */
 static void orient(struct layered *layered)
 {
     int corners = layered->cells.dim + 1;

@@ -59,7 +59,6 @@ static const char usage[] =
 #include <math.h>
 #include <string.h>
 
-/* Whether -i says that supports stop nowhere. */
 static bool none_named(const struct tool *tool)
 {
     return tool_given(tool, "interface") && strcmp(tool_value(tool, "interface"), "none") == 0;

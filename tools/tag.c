@@ -262,7 +262,6 @@ static void report(const struct tool *tool, const struct group_body *body, enum 
     tool_note(tool, "%s %s: %s", group_kind_names[kind], list->names.name[group], text);
 }
 
-/* Remove sections that depend on the groups of facets. */
 static void drop_stale(const struct tool *tool, struct stream *stream)
 {
     int64_t before = stream->section_count;

@@ -146,7 +146,6 @@ static void print_elements(FILE *file, const struct group_kind kind[3])
     fprintf(file, "$EndElements\n");
 }
 
-/* Print the body as a file of gmsh, MSH 4.1 as text. */
 static enum status write_msh(FILE *file, const struct body *body, double unit, struct error *error)
 {
     const struct cells *cells = &body->cells;

@@ -47,7 +47,6 @@ static const char usage[] =
 #include <stdlib.h>
 #include <string.h>
 
-/* Write one frame as a vtu file; NULL: to standard output. */
 static void write_vtu(const struct tool *tool, struct plot *plot, int64_t frame, const char *name)
 {
     struct output output;
@@ -84,7 +83,6 @@ static void write_series(const struct tool *tool, struct plot *plot)
     }
 }
 
-/* Exit if the name of the output has another ending. */
 static void check_ending(const struct tool *tool)
 {
     const char *path = tool->output != NULL ? tool->output : "", *slash = strrchr(path, '/');

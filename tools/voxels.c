@@ -75,7 +75,6 @@ static const char usage[] =
 /* Errors of volume above this share are reported, and a share of the body outside of the cells with sizes. */
 static const double reported_share = 0.01;
 
-/* A volume in ml, an area in cm2. */
 static double shown(int dim, double volume)
 {
     return volume * (dim == 3 ? 1e6 : 1e4);
@@ -125,7 +124,6 @@ static void report_labels(const struct tool *tool, const struct label_image *ima
     }
 }
 
-/* Report the number of connected bodies if there are several. */
 static void report_bodies(const struct tool *tool, const struct cells *cells, bool verbose)
 {
     int32_t count = 0;

@@ -122,7 +122,6 @@ static void parse(const struct tool *tool, struct warp_request *request)
     tool_check_image_output(tool);
 }
 
-/* The body and its displacement. */
 static const double *find_field(const struct tool *tool, const struct stream *stream, const char *name,
                                 struct cells *cells)
 {
@@ -185,7 +184,6 @@ static void print_report(const struct tool *tool, const struct warp_request *req
     }
 }
 
-/* Exit if the image's type cannot represent a value of an option. */
 static void check_value(const struct tool *tool, const struct image *image, const char *option, double value)
 {
     double least, most;

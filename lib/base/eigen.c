@@ -28,7 +28,6 @@ static void rotate(int n, int p, int q, double *S, double *V)
     }
 }
 
-/* Whether all off-diagonal entries are round-off. */
 static bool is_diagonal(int n, const double *S)
 {
     double off2 = 0.0, diagonal2 = 0.0;

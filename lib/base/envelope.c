@@ -107,13 +107,11 @@ static double *column_of(const struct envelope *factor, const struct envelope_gr
     return factor->value + group->start + (column - group->first) * ENVELOPE_GROUP;
 }
 
-/* The threads that are worth using for all blocks. */
 static inline int threads_for(const struct envelope *factor)
 {
     return factor->block_count > 1 ? chunks_of(factor->size, ENTRIES_FOR_THREAD).threads : 1;
 }
 
-/* Lay out the envelope of the reordered matrix, whose rows are `width` for each of the graph. */
 static enum status lay_out(const int64_t *ptr, const int64_t *column, int64_t width, struct envelope *factor,
                            struct error *error)
 {
@@ -140,7 +138,6 @@ static enum status lay_out(const int64_t *ptr, const int64_t *column, int64_t wi
     return STATUS_OK;
 }
 
-/* The envelope, filled with the lower triangle of the matrix. */
 static enum status fill(const int64_t *ptr, const int64_t *column, const double *value,
                         struct envelope *factor, struct error *error)
 {

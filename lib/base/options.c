@@ -20,7 +20,6 @@ static void declare(struct options *options, char letter, const char *name, size
     memcpy(option->name, name, length);
 }
 
-/* The option that a line declares, if it does. */
 static void declare_line(struct options *options, const char *line)
 {
     bool has_letter = strncmp(line, "  -", 3) == 0 && strncmp(line + 4, ", --", 4) == 0;
@@ -64,7 +63,6 @@ void options_declare(struct options *options, const char *usage)
     declare(options, '\0', "version", strlen("version"), false, false);
 }
 
-/* The index of the option of that name, or -1. */
 static int find_name(const struct options *options, const char *name, size_t length)
 {
     for (int i = 0; i < options->count; i++) {

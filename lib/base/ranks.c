@@ -112,7 +112,6 @@ void row_ranges_free(struct row_ranges *ranges)
     *ranges = (struct row_ranges){0};
 }
 
-/* List the items wanted from each process. */
 static enum status list_wanted(struct halo *halo, int64_t items, const bool *wanted,
                                int (*owner)(const void *context, int64_t item), const void *context,
                                struct error *error)

@@ -38,7 +38,6 @@ static enum status check_section(const struct stream *stream, const struct secti
 
 /* ---- sections together, each as the table says ---- */
 
-/* Check that shape functions sum to 1 over each list. */
 static enum status check_unity(const struct neighbours *lists, const struct section *phi, struct error *error)
 {
     const double *value = phi->data;
@@ -79,7 +78,6 @@ static enum status check_lists(const struct stream *stream, const char *ptr_name
     return STATUS_OK;
 }
 
-/* Check regions, facets and node sets. */
 static enum status check_groups(const struct stream *stream, const struct cells *cells, struct error *error)
 {
     FREED_BY(cell_regions_free) struct cell_regions regions = {0};
@@ -121,7 +119,6 @@ static enum status check_faces(const struct stream *stream, const struct cells *
 
 /* ---- all of it ---- */
 
-/* Add what is wrong to the violations. */
 static enum status note(struct names *violations, enum status status, struct error *error)
 {
     return status == STATUS_INPUT ? names_add(violations, error->text, error) : status;

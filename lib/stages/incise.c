@@ -132,7 +132,6 @@ static enum status list_pieces(const struct cut_body *whole, int32_t *part, stru
     return STATUS_OK;
 }
 
-/* Decide which pieces are taken out. */
 static enum status judge_pieces(const struct cut_body *whole, int32_t count, struct piece *piece,
                                 struct error *error)
 {

@@ -40,7 +40,6 @@ static void mark_members(const struct cut_body *whole, int64_t set, bool *in)
     }
 }
 
-/* The set NAME|edge of the stream, or -1. */
 static int64_t find_edge(const struct cut_body *whole)
 {
     const char *name = whole->options->name;

@@ -9,7 +9,6 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Allocate `count` points. */
 static enum status new_points(int64_t count, int dim, struct adaptive_points *points, struct error *error)
 {
     RETURN_IF_ERROR(NEW_ARRAY(&points->x, count * dim, error));
@@ -141,7 +140,6 @@ enum status stage_face_points(struct stream *stream, struct error *error)
     return put_face_points(stream, &cells, &faces, error);
 }
 
-/* Put the faces and their quadrature points. */
 static enum status put_faces(struct stream *stream, const struct cells *cells, bool boundary_only,
                              struct error *error)
 {

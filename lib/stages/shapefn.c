@@ -120,7 +120,6 @@ enum status stage_shapefn(struct stream *stream, const struct mls *mls, struct e
 
 /* ---- the tables of a stream, for mtled ---- */
 
-/* Read the integration points. */
 static enum status read_points(const struct stream *stream, struct assembly *input, struct error *error)
 {
     const struct section *points, *weight, *cell;
@@ -151,7 +150,6 @@ static enum status read_table(const struct stream *stream, const char *prefix, c
     return STATUS_OK;
 }
 
-/* Read the tables of points or faces, of the boundary, and of the nodes. */
 static enum status read_tables(const struct stream *stream, struct assembly *input, struct error *error)
 {
     int64_t nodes = input->cells.node_count, points = input->point_count;

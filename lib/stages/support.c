@@ -31,7 +31,6 @@ enum status stage_radii(const struct stream *stream, const struct support_option
                                  : local_radii(stream, options, node_count, x, radius, error);
 }
 
-/* Put the radii of the nodes into the stream, with the settings. */
 static enum status put_radii(struct stream *stream, const struct support_options *options, int64_t node_count,
                              const double *x, struct error *error)
 {

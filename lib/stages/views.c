@@ -9,7 +9,6 @@
 
 /* ---- any section, by its entry in the table of sections ---- */
 
-/* The program that makes a section. */
 static const char *producer(const struct section_kind *kind)
 {
     static const char *const of_stages[] = {"nodes", "ipoints", "support", "shapefn", "mtled"};

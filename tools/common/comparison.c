@@ -61,7 +61,6 @@ void sides_check(const struct tool *tool, const struct side *first, const struct
     }
 }
 
-/* Note the first value that is not finite; returns whether there is one. */
 static bool has_unknown(const struct tool *tool, const struct side *side, const char *field)
 {
     for (int64_t i = 0; i < side->field.cells.node_count * side->field.cols; i++) {
@@ -74,7 +73,6 @@ static bool has_unknown(const struct tool *tool, const struct side *side, const 
     return false;
 }
 
-/* Find the nodes of each region of A's cells, if there are any. */
 static enum status find_members(const struct side *a, struct findings *findings, struct error *error)
 {
     const struct cells *cells = &a->field.cells;
@@ -199,7 +197,6 @@ double iteration_error(const struct side *side)
     return known ? *(const double *)section->data : -1.0;
 }
 
-/* Print the statistics of the nodes of each region. */
 static enum status print_regions(const struct findings *findings, struct error *error)
 {
     const struct field_comparison *comparison = &findings->comparison;

@@ -21,7 +21,6 @@ static void remove_pending(void)
     }
 }
 
-/* Remove the temporary file and raise the signal with its default action. */
 static void on_signal(int number)
 {
     remove_pending();
@@ -41,7 +40,6 @@ static void handle_signals(void)
     }
 }
 
-/* Permissions of the file to be replaced, or of a new file. */
 static mode_t file_mode(const struct stat *present)
 {
     if (present != NULL) {

@@ -20,7 +20,6 @@ void sample_points_table(const struct tool *tool, const char *file, double unit,
     }
 }
 
-/* Keep the points in cells of the regions in a comma-separated list. */
 static void choose_regions(const struct tool *tool, const struct stream *stream, char *list,
                            struct sample_points *rows)
 {

@@ -88,7 +88,6 @@ static const struct invariant {
     {"strain", "J", 1, "unit=1", "volume_ratio", volume_ratio},
 };
 
-/* Whether the stream has the section in the frame that `tail` names. */
 static bool has_section(const struct stream *stream, const char *name, const char *tail)
 {
     char full[128];
@@ -232,7 +231,6 @@ static bool is_of_points(const char *name)
     return is_one_of(name, first);
 }
 
-/* Whether a section is a field on nodes or cells. */
 static bool is_field(const struct vtk_mesh *mesh, const struct section *section, bool *of_cells)
 {
     bool fits_cells = mesh->node != NULL && section->rows == mesh->cell_count;

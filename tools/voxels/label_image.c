@@ -31,7 +31,6 @@ static int32_t place_of(const struct values *values, int64_t value, int32_t gues
                : (int32_t)first_from(values->value, 0, values->count, value);
 }
 
-/* Exit at a voxel whose value is no label. */
 static void fail_value(const struct tool *tool, const struct image *image, int64_t voxel)
 {
     int64_t nx = (int64_t)image->size[0], ny = (int64_t)image->size[1];
@@ -91,7 +90,6 @@ static void name_values(const struct tool *tool, const struct image *image, cons
     }
 }
 
-/* Find the label of each value by the table. */
 static void label_values(const struct tool *tool, struct values *values, struct label_image *image,
                          const char *table)
 {
@@ -163,7 +161,6 @@ static int grid_axis(const struct tool *tool, const struct image *image, int wor
     return found;
 }
 
-/* Keep one slice of the image. */
 static void take_slice(struct image *image, int axis, size_t slice)
 {
     size_t nx = image->size[0], ny = image->size[1], count = 0;
@@ -179,7 +176,6 @@ static void take_slice(struct image *image, int axis, size_t slice)
     image->size[axis] = 1;
 }
 
-/* Parse "z=12mm". */
 static void parse_slice(const struct tool *tool, const char *text, int *axis, double *place)
 {
     *axis = text[0] - 'x';

@@ -32,7 +32,6 @@ static bool is_chosen(const struct label_cells *mesh, const struct label_surface
     return side[0] == options->inner && (options->outer < 0 || side[1] == options->outer);
 }
 
-/* Unit outward normal of a facet. */
 static void unit_normal(const struct label_cells *mesh, int64_t facet, double normal[3])
 {
     int dim = mesh->dim;

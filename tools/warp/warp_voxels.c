@@ -25,7 +25,6 @@ static void find_place(const struct warp_job *job, int64_t v, const double x[3],
     report->inconsistency = fmax(report->inconsistency, residual);
 }
 
-/* The value for a voxel of this label; NULL: none. */
 static const double *value_of(const struct warp_values *values, double label)
 {
     for (int i = 0; i < values->count; i++) {
@@ -69,7 +68,6 @@ static void put_value(const struct warp_job *job, int64_t v, const double place[
     }
 }
 
-/* Process one row of voxels. */
 static void do_row(const struct warp_job *job, int64_t row, struct warp_report *report)
 {
     struct image *result = job->result;

@@ -32,7 +32,6 @@ static bool take(struct json *json, char c)
     return found;
 }
 
-/* What ends an object or array. */
 static char closing(char bracket)
 {
     if (bracket == '{') {

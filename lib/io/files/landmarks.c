@@ -149,7 +149,6 @@ static char *take_field(char **rest)
     return field;
 }
 
-/* Split a line at its commas. Returns the number of fields. */
 static int split(char *line, char *field[COLUMNS])
 {
     int count = 0;
@@ -159,7 +158,6 @@ static int split(char *line, char *field[COLUMNS])
     return count;
 }
 
-/* The columns of x, y, z and the label. */
 static const char *const column_names[4] = {"x", "y", "z", "label"};
 
 /* Take what a comment tells of axes and columns. */

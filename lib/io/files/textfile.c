@@ -68,7 +68,6 @@ static enum status check_kind(const char *path, struct error *error)
     return STATUS_OK;
 }
 
-/* The checks of textfile_read on bytes that bytefile_read has read. */
 static enum status textfile_check(const char *path, const struct textfile *file, struct error *error)
 {
     const unsigned char *bytes = (const unsigned char *)file->text;

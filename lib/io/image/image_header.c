@@ -89,7 +89,6 @@ void nifti_decode(const unsigned char *bytes, int version, bool swapped, struct 
     copy_text(image->intent_name, bytes + intent_name_offset[version - 1], 16);
 }
 
-/* dim[0] .. dim[7]. */
 static void sizes_of(const struct image *image, const struct nifti_type *type, double dim[8])
 {
     bool vector = image->components != (size_t)type->components;

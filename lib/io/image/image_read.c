@@ -17,7 +17,6 @@
 static const double exact_integers = 9007199254740992.0; /* 2^53: all up to there are doubles */
 static const char pair_magic[] = "ni1";
 
-/* The error for a file of another format, with the remedy. */
 static enum status fail_foreign(const unsigned char *bytes, size_t size, struct error *error)
 {
     static const struct {
@@ -51,7 +50,6 @@ static enum status check_magic(const unsigned char *bytes, int version, bool *pa
                         : fail(error, STATUS_INPUT, "header: no mark of NIfTI-2: damaged");
 }
 
-/* Take and decode the header. */
 static enum status read_header(struct image_bytes *file, struct nifti *header, struct image *image,
                                struct error *error)
 {

@@ -125,7 +125,6 @@ static void complete_slice(double m[3][4])
     }
 }
 
-/* Whether all entries are finite, and the axes span the space. */
 static bool is_sound(double m[3][4])
 {
     double volume = column_length(m, 0) * column_length(m, 1) * column_length(m, 2);

@@ -173,7 +173,6 @@ static enum status read_values(struct image_bytes *file, const struct image_layo
     return STATUS_OK;
 }
 
-/* Refuse integers that a double cannot represent. */
 static enum status check_exact(const struct nifti_type *type, size_t count, const double *values,
                                struct error *error)
 {

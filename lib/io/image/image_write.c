@@ -17,7 +17,6 @@ static void print_type(FILE *file, const struct image *image, int format)
     fwrite(names, 1, strcspn(names, "|"), file);
 }
 
-/* A column of to_world, in LPS and mm. */
 static void print_vector(FILE *file, const struct image *image, int column)
 {
     fprintf(file, " (%.15g,%.15g,%.15g)", 0.0 - 1e3 * image->to_world[0][column],

@@ -61,7 +61,6 @@ bool label_table_find(const struct label_table *table, int64_t label, int32_t *n
 
 static const char not_in_names[] = ",\"=:|";
 
-/* Make a text valid as a new name. */
 static void make_name(const struct label_table *table, char *text, size_t size)
 {
     for (char *at = text; *at != '\0'; at++) {

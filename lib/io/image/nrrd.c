@@ -224,7 +224,6 @@ static void set_values(struct nrrd *nrrd, int component)
     }
 }
 
-/* The image's sizes and place. */
 static enum status place(struct nrrd *nrrd, const struct text_header *header, struct error *error)
 {
     double size[3] = {1, 1, 1}, matrix[3][4] = {{0}};

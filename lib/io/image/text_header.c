@@ -155,7 +155,6 @@ static enum status take_flag(const struct text_header *header, bool *flag, struc
                : header_fail(header, "True or False is expected", error);
 }
 
-/* Whether a part of the path is "..". */
 static bool leads_up(const char *path)
 {
     for (; *path != '\0'; path += strcspn(path, "/")) {

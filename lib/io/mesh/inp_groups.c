@@ -51,7 +51,6 @@ static void add_of_surface(struct inp *p, const struct inp_set *set, int type, c
     check_size(p, p->r->msh->element_count);
 }
 
-/* Add face `f` of an element. */
 static void add_face(struct inp *p, const struct inp_set *set, int linear, const int64_t node[], int f)
 {
     int64_t face[4];

@@ -26,7 +26,6 @@ static void trim(const char **text, int64_t *length)
     }
 }
 
-/* Take quotes off. */
 static void unquote(const char **text, int64_t *length)
 {
     if (*length > 1 && (*text)[0] == '"' && (*text)[*length - 1] == '"') {
@@ -35,7 +34,6 @@ static void unquote(const char **text, int64_t *length)
     }
 }
 
-/* The next line that is no comment. */
 static void next_line(struct inp *p)
 {
     struct msh_reader *r = p->r;

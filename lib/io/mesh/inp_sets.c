@@ -150,7 +150,6 @@ static void read_ranges(struct inp *p, struct inp_set *set)
     }
 }
 
-/* Add the nodes of the elements of a set. */
 static void add_corners(struct inp *p, struct inp_set *set, const char *name)
 {
     const struct inp_set *from = find_set(p, 'E', name, strlen(name));

@@ -59,7 +59,6 @@ static const char *next_word(struct msh_reader *r, const char *what, int64_t *le
     return word;
 }
 
-/* The next bytes of a binary file. */
 static void next_bytes(struct msh_reader *r, const char *what, size_t size, void *bytes)
 {
     if ((size_t)(r->end - r->at) < size) {

@@ -192,7 +192,6 @@ static enum status add_cell(struct mesh_draft *draft, int64_t element, int32_t r
     return STATUS_OK;
 }
 
-/* Split the kept cells into simplices with positive orientation. */
 static enum status build_cells(struct mesh_draft *draft)
 {
     const struct msh *msh = draft->msh;

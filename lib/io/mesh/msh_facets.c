@@ -172,7 +172,6 @@ static enum status note_tally(struct gathering *g, const struct msh_group *group
     return STATUS_OK;
 }
 
-/* Gather a group of dimension dim - 1. */
 static enum status gather_facets(struct gathering *g, int32_t group)
 {
     const struct msh *msh = g->draft->msh;
@@ -194,7 +193,6 @@ static enum status gather_facets(struct gathering *g, int32_t group)
     return note_tally(g, &msh->groups[group], &tally);
 }
 
-/* Gather a group of lower dimension. */
 static enum status gather_nodes(struct gathering *g, int32_t group)
 {
     const struct msh *msh = g->draft->msh;

@@ -55,7 +55,6 @@ static void group_by_entity(struct msh_reader *r)
     }
 }
 
-/* Collect the groups that names, entities and elements name. */
 static void collect_groups(struct msh_reader *r)
 {
     struct msh *msh = r->msh;

@@ -89,7 +89,6 @@ static void read_ending(struct msh_reader *r)
     }
 }
 
-/* Skip a section that is not needed. */
 static void skip_section(struct msh_reader *r)
 {
     char ending[80] = "$End";

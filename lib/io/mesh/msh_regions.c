@@ -109,7 +109,6 @@ static enum status find_cells(struct mesh_draft *draft, bool is_cell[])
                                       (long long)again);
 }
 
-/* Check that every wanted region exists. */
 static enum status check_wanted(const struct mesh_draft *draft, const struct names *wanted,
                                 const struct names *present)
 {

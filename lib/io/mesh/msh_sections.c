@@ -108,7 +108,6 @@ static int compare_entities(const void *left, const void *right)
     return a->key != b->key ? compare_int64(a, b) : compare_int64(&a->group, &b->group);
 }
 
-/* Sort the entities; each stands once. */
 static void sort_entities(struct msh_reader *r)
 {
     qsort(r->entities, (size_t)r->entity_count, sizeof *r->entities, compare_entities);

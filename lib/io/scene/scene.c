@@ -77,7 +77,6 @@ static enum status read_sections(const struct ini_file *file, struct scene *scen
     return STATUS_OK;
 }
 
-/* Check that a region has one material. */
 static enum status check_regions(const struct scene *scene, struct error *error)
 {
     for (int64_t m = 0; m < scene->material_count; m++) {
@@ -105,7 +104,6 @@ static bool has_prony(const struct scene *scene)
     return terms > 0;
 }
 
-/* The first contact with friction, or NULL. */
 static const struct scene_contact *first_friction(const struct scene *scene)
 {
     for (int64_t c = 0; c < scene->contact_count; c++) {

@@ -36,7 +36,6 @@ static enum status fail_line(struct reading *reading, const char *what)
                 what);
 }
 
-/* A line without comment and blanks at its ends. */
 static char *content(char *line)
 {
     for (size_t i = 0; line[i] != '\0'; i++) {
@@ -85,7 +84,6 @@ static enum status add_section(struct reading *reading, char *header)
     return STATUS_OK;
 }
 
-/* Append an entry `key = value` to the last section. */
 static enum status add_entry(struct reading *reading, char *key)
 {
     struct ini_file *file = reading->file;

@@ -27,7 +27,6 @@ static bool law_has(const struct law *law, const char *name)
     return key->name != NULL;
 }
 
-/* Refuse keys that belong to other laws. */
 static enum status check_foreign(const struct place *place, const struct law *law)
 {
     for (int l = 0; l < law_count; l++) {

@@ -329,7 +329,6 @@ static enum status read_lines(struct reader *reader, struct error *error)
     return STATUS_OK;
 }
 
-/* Remove incomplete sections from the stream. */
 static void drop_torn(const struct reader *reader)
 {
     while (reader->stream->section_count > reader->whole) {

@@ -20,7 +20,6 @@ static bool column_name(const struct section *section, int64_t column, char text
     return name != NULL && snprintf(text, 64, "%s", name) < 64 && text[0] != '\0';
 }
 
-/* The column of that name, or -1. */
 static int64_t find_column(const struct section *section, const char *wanted)
 {
     char name[64];

@@ -25,7 +25,6 @@ static void combine(enum joint joint, int64_t count, const bool *term, bool *cho
     }
 }
 
-/* The index of a word that joins terms, or JOINTS. */
 static enum joint joint_of(const char *word)
 {
     int joint = 0;

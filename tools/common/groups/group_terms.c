@@ -199,7 +199,6 @@ static enum status choose_by(const struct term *term, enum group_kind from, cons
     return STATUS_OK;
 }
 
-/* Choose the whole boundary, or the nodes on it. */
 static enum status choose_boundary(const struct term *term)
 {
     NEW_SCRATCH(bool, facets, term->body->boundary.count, term->error);
@@ -320,7 +319,6 @@ static const struct {
     {"along", choose_near, 0, 0, {NULL}, false, false}};
 enum { TERMS = sizeof terms / sizeof *terms };
 
-/* Evaluate term t of the table, after its numbers are parsed. */
 static enum status choose_term(struct term *term, int t)
 {
     int dim = term->body->cells.dim, count = terms[t].axes * dim + terms[t].more;

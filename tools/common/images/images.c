@@ -171,7 +171,6 @@ void image_from_body(struct image *image, const struct image_axes *axes)
     reorder(image, axes, true);
 }
 
-/* Determinant of the map from world coordinates to voxels in dim dimensions. */
 static double determinant(const struct image *grid, int dim)
 {
     double m[3][4];
@@ -224,7 +223,6 @@ int32_t *find_owners(const struct tool *tool, const struct image *grid, const st
     return owner;
 }
 
-/* The box of the voxel centres, m. */
 static struct box image_box(const struct image *image)
 {
     double corner[8][3];

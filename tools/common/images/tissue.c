@@ -45,7 +45,6 @@ enum status tissue_parse(int count, const char *const text[], struct tissue *tis
     return STATUS_OK;
 }
 
-/* Moduli by linear interpolation between the rows of the table. */
 static void by_law(const struct table *law, double value, double moduli[2], int64_t *beyond)
 {
     const double *rows = law->values;
