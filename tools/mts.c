@@ -117,14 +117,13 @@ static int print_cells(const struct tool *tool, const struct stream *stream)
     if (report.poor > report.listed) {
         printf("cells: %" PRId64 " more of quality below %g\n", report.poor - report.listed, POOR_QUALITY);
     }
-    FREED_BY(named_facets_free) struct named_facets facets = {0};
+    FREED_BY(groups_free) struct groups facets = {0};
     bool parts;
     char hanging[512];
     if (stream_facets(stream, false, &cells, &facets, &error) != STATUS_OK) {
         facets.count = 0; /* reported, too */
     }
-    tool_check(tool, cell_report_hanging(&cells, facets.count, facets.facet, &parts, hanging, &error),
-               &error);
+    tool_check(tool, cell_report_hanging(&cells, facets.count, facets.node, &parts, hanging, &error), &error);
     if (hanging[0] != '\0') {
         printf("cells: %s\n", hanging);
     }

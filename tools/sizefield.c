@@ -53,15 +53,13 @@ static enum status recover(const struct stream *stream, const char *field, struc
                            double **squared, struct error *error)
 {
     const struct section *section;
-    FREED_BY(cell_regions_free) struct cell_regions regions = {0};
+    FREED_BY(groups_free) struct groups regions = {0};
     RETURN_IF_ERROR(stream_cells(stream, true, cells, error));
     RETURN_IF_ERROR(stream_field(stream, field, 0, cells->node_count, &section, error));
-    if (stream_find(stream, "cells.region") != NULL) {
-        RETURN_IF_ERROR(stream_regions(stream, &regions, error));
-    }
+    RETURN_IF_ERROR(stream_regions(stream, false, &regions, error));
     RETURN_IF_ERROR(NEW_ARRAY(squared, cells->count, error));
     return fail_in(error,
-                   field_error_recovered(cells, regions.of_cell, (int32_t)regions.names.count, section->cols,
+                   field_error_recovered(cells, regions.group, (int32_t)regions.names.count, section->cols,
                                          section->data, *squared, error),
                    "%s", field);
 }

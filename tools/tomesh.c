@@ -33,22 +33,22 @@ static const char usage[] =
 /* What is written of a stream, with what must be freed. */
 struct body {
     struct cells cells;
-    struct cell_regions regions;
-    struct named_facets facets;
-    struct named_sets sets;
+    struct groups regions;
+    struct groups facets;
+    struct groups sets;
 };
 
 static void body_free(struct body *body)
 {
-    cell_regions_free(&body->regions);
-    named_facets_free(&body->facets);
-    named_sets_free(&body->sets);
+    groups_free(&body->regions);
+    groups_free(&body->facets);
+    groups_free(&body->sets);
 }
 
 static enum status find_body(const struct stream *stream, struct body *body, struct error *error)
 {
     RETURN_IF_ERROR(stream_cells(stream, true, &body->cells, error));
-    RETURN_IF_ERROR(stream_regions(stream, &body->regions, error));
+    RETURN_IF_ERROR(stream_regions(stream, true, &body->regions, error));
     RETURN_IF_ERROR(stream_facets(stream, false, &body->cells, &body->facets, error));
     return stream_sets(stream, false, body->cells.node_count, &body->sets, error);
 }
@@ -159,9 +159,9 @@ static enum status write_msh(FILE *file, const struct body *body, double unit, s
         }
     }
     const struct group_kind kind[3] = {{dim, dim == 3 ? 4 : 2, dim + 1, cells->count, cells->node,
-                                        body->regions.of_cell, &body->regions.names},
-                                       {dim - 1, dim == 3 ? 2 : 1, dim, body->facets.count,
-                                        body->facets.facet, body->facets.group, &body->facets.names},
+                                        body->regions.group, &body->regions.names},
+                                       {dim - 1, dim == 3 ? 2 : 1, dim, body->facets.count, body->facets.node,
+                                        body->facets.group, &body->facets.names},
                                        {0, 15, 1, set_size, sets->idx, set, &body->sets.names}};
     fprintf(file, "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n");
     print_names(file, kind);
@@ -180,12 +180,12 @@ static enum status write_msh(FILE *file, const struct body *body, double unit, s
 
 /* ---- decks of Abaqus and CalculiX ---- */
 
-static void print_cells(FILE *file, const struct cells *cells, const struct cell_regions *regions)
+static void print_cells(FILE *file, const struct cells *cells, const struct groups *regions)
 {
     for (int64_t c = 0; c < cells->count;) {
-        int64_t end = run_end(cells->count, regions->of_cell, c);
+        int64_t end = run_end(cells->count, regions->group, c);
         fprintf(file, "*ELEMENT, TYPE=%s, ELSET=%s\n", cells->dim == 3 ? "C3D4" : "CPE3",
-                regions->names.name[regions->of_cell[c]]);
+                regions->names.name[regions->group[c]]);
         for (; c < end; c++) {
             fprintf(file, "%" PRId64, c + 1);
             for (int k = 0; k <= cells->dim; k++) {
@@ -199,13 +199,13 @@ static void print_cells(FILE *file, const struct cells *cells, const struct cell
 /* The faces of an element by the corner that each lies opposite. */
 static const char *const face_names[2][4] = {{"S2", "S3", "S1", ""}, {"S3", "S4", "S2", "S1"}};
 
-static enum status print_surfaces(FILE *file, const struct cells *cells, const struct named_facets *facets,
+static enum status print_surfaces(FILE *file, const struct cells *cells, const struct groups *facets,
                                   struct error *error)
 {
     FREED_BY(faces_free) struct faces faces = {0};
     NEW_SCRATCH(int64_t, found, facets->count, error);
     RETURN_IF_ERROR(faces_build(cells, true, &faces, error));
-    RETURN_IF_ERROR(faces_find(&faces, facets->count, facets->facet, found, error));
+    RETURN_IF_ERROR(faces_find(&faces, facets->count, facets->node, found, error));
     for (int32_t g = 0; g < facets->names.count; g++) {
         fprintf(file, "*SURFACE, TYPE=ELEMENT, NAME=%s\n", facets->names.name[g]);
         for (int64_t f = 0; f < facets->count; f++) {
@@ -218,7 +218,7 @@ static enum status print_surfaces(FILE *file, const struct cells *cells, const s
             }
             int64_t cell = faces.cell[2 * found[f]];
             const int32_t *corner = cells->node + cell * (cells->dim + 1),
-                          *node = facets->facet + f * cells->dim;
+                          *node = facets->node + f * cells->dim;
             while (corner[vertex] == node[0] || corner[vertex] == node[1] ||
                    corner[vertex] == node[cells->dim - 1]) {
                 vertex++;

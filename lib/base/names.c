@@ -71,10 +71,3 @@ int64_t names_find(const struct names *names, const char *name)
     }
     return -1;
 }
-
-enum status names_attribute(const struct names *names, char **text, struct error *error)
-{
-    return asprintf(text, "names=%s", names->list != NULL ? names->list : "") >= 0
-               ? STATUS_OK
-               : (*text = NULL, fail_memory(error, "names"));
-}

@@ -27,6 +27,3 @@ MUST_CHECK enum status names_change(struct names *names, int64_t index, const ch
 
 /* Index of `name`, or -1. */
 int64_t names_find(const struct names *names, const char *name);
-
-/* *text = "names=body,lump", to be freed. */
-MUST_CHECK enum status names_attribute(const struct names *names, char **text, struct error *error);

@@ -80,11 +80,9 @@ static enum status check_lists(const struct stream *stream, const char *ptr_name
 
 static enum status check_groups(const struct stream *stream, const struct cells *cells, struct error *error)
 {
-    FREED_BY(cell_regions_free) struct cell_regions regions = {0};
-    FREED_BY(named_facets_free) struct named_facets facets = {0};
-    FREED_BY(named_sets_free) struct named_sets sets = {0};
-    if (cells->count > 0 && stream_find(stream, "cells.region") != NULL) {
-        RETURN_IF_ERROR(stream_regions(stream, &regions, error));
+    FREED_BY(groups_free) struct groups regions = {0}, facets = {0}, sets = {0};
+    if (cells->count > 0) {
+        RETURN_IF_ERROR(stream_regions(stream, false, &regions, error));
     }
     if (cells->node_count > 0) {
         RETURN_IF_ERROR(stream_facets(stream, false, cells, &facets, error));

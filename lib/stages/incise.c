@@ -11,9 +11,9 @@
 
 static void cut_body_free(struct cut_body *whole)
 {
-    cell_regions_free(&whole->regions);
-    named_facets_free(&whole->facets);
-    named_sets_free(&whole->sets);
+    groups_free(&whole->regions);
+    groups_free(&whole->facets);
+    groups_free(&whole->sets);
     division_free(&whole->body);
 }
 
@@ -34,14 +34,10 @@ static enum status read_body(const struct stream *stream, struct cut_body *whole
     struct cells *cells = &whole->cells;
     RETURN_IF_ERROR(stream_cells(stream, true, cells, error));
     RETURN_IF_ERROR(stream_facets(stream, false, cells, &whole->facets, error));
-    if (stream_find(stream, "cells.region") != NULL) {
-        RETURN_IF_ERROR(stream_regions(stream, &whole->regions, error));
-    }
-    if (stream_find(stream, "sets.ptr") != NULL) {
-        RETURN_IF_ERROR(stream_sets(stream, false, cells->node_count, &whole->sets, error));
-    }
-    RETURN_IF_ERROR(division_begin(cells, options->at, whole->regions.of_cell, whole->facets.count,
-                                   whole->facets.facet, whole->facets.group, &whole->body, error));
+    RETURN_IF_ERROR(stream_regions(stream, false, &whole->regions, error));
+    RETURN_IF_ERROR(stream_sets(stream, false, cells->node_count, &whole->sets, error));
+    RETURN_IF_ERROR(division_begin(cells, options->at, whole->regions.group, whole->facets.count,
+                                   whole->facets.node, whole->facets.group, &whole->body, error));
     for (int64_t s = 0; s < whole->sets.names.count; s++) {
         const struct neighbours *lists = &whole->sets.lists;
         for (int64_t i = lists->ptr[s]; i < lists->ptr[s + 1]; i++) {
@@ -173,7 +169,7 @@ static enum status choose_cells(struct cut_body *whole, bool *kept, struct error
     RETURN_IF_ERROR(list_pieces(whole, part, &piece, &count, error));
     RETURN_IF_ERROR(judge_pieces(whole, count, piece, error));
     for (int64_t c = 0; c < body->cell_count; c++) {
-        bool in_region = region >= 0 && whole->regions.of_cell[body->of_cell[c]] == region;
+        bool in_region = region >= 0 && whole->regions.group[body->of_cell[c]] == region;
         kept[c] = !piece[part[c]].taken_out && !in_region;
         whole->report->region_cells += in_region;
         left += kept[c];

@@ -7,9 +7,9 @@
 struct cut_body {
     const struct incise_options *options;
     struct cells cells;
-    struct cell_regions regions; /* none: no names */
-    struct named_facets facets;
-    struct named_sets sets;
+    struct groups regions; /* none: no names */
+    struct groups facets;
+    struct groups sets;
     struct division body;
     int32_t front, back, wall; /* groups of facets, -1: none */
     int64_t old_groups;        /* those of the stream, before new ones */

@@ -75,7 +75,7 @@ static enum status mark_edge(const struct cut_body *whole, bool *edge, struct er
         mark_members(whole, own, edge);
     }
     mark_lips(body->dim, body->facet_count, body->facet, body->group, whole->front, whole->back, of_lip);
-    mark_lips(body->dim, whole->facets.count, whole->facets.facet, whole->facets.group, whole->front,
+    mark_lips(body->dim, whole->facets.count, whole->facets.node, whole->facets.group, whole->front,
               whole->back, before);
     for (int64_t n = old; n < body->node_count; n++) {
         const int32_t *parent = &body->parent[2 * n];
@@ -95,7 +95,6 @@ static enum status put_sets(struct cut_body *whole, const bool *edge, const int3
     struct names *names = &whole->sets.names;
     int64_t own = find_edge(whole), room = 0, count = 0, lists = 0;
     SCRATCH int32_t *idx = NULL;
-    SCRATCH char *text = NULL;
     bool any = whole->report->edge > 0;
     NEW_SCRATCH(bool, in, node_count, error);
     NEW_SCRATCH(int64_t, ptr, names->count + 2, error);
@@ -126,9 +125,8 @@ static enum status put_sets(struct cut_body *whole, const bool *edge, const int3
     if (any) {
         RETURN_IF_ERROR(names_print(names, error, "%s|edge", whole->options->name));
     }
-    RETURN_IF_ERROR(names_attribute(names, &text, error));
     RETURN_IF_ERROR(
-        stream_put(stream, "sets.ptr", TYPE_I8, lists + 1, 1, text, array_take(&ptr), true, error));
+        stream_put_named(stream, "sets.ptr", TYPE_I8, lists + 1, names, array_take(&ptr), true, error));
     return stream_put(stream, "sets.idx", TYPE_I4, count, 1, "", array_take(&idx), true, error);
 }
 
@@ -140,36 +138,32 @@ static enum status put_regions(struct cut_body *whole, struct stream *stream, st
     struct names *names = &whole->regions.names;
     const char *without = whole->options->region;
     int64_t region = without != NULL ? names_find(names, without) : -1;
-    SCRATCH char *text = NULL;
-    if (whole->regions.of_cell == NULL) {
+    if (whole->regions.group == NULL) {
         return STATUS_OK;
     }
     NEW_SCRATCH(int32_t, of_cell, body->cell_count, error);
     for (int64_t c = 0; c < body->cell_count; c++) {
-        int32_t own = whole->regions.of_cell[body->of_cell[c]];
+        int32_t own = whole->regions.group[body->of_cell[c]];
         of_cell[c] = own - (region >= 0 && own > region);
     }
     if (region >= 0) {
         RETURN_IF_ERROR(names_change(names, region, NULL, error));
     }
-    RETURN_IF_ERROR(names_attribute(names, &text, error));
-    return stream_put(stream, "cells.region", TYPE_I4, body->cell_count, 1, text, array_take(&of_cell), true,
-                      error);
+    return stream_put_named(stream, "cells.region", TYPE_I4, body->cell_count, names, array_take(&of_cell),
+                            true, error);
 }
 
 static enum status put_facets(struct cut_body *whole, struct stream *stream, struct error *error)
 {
     struct division *body = &whole->body;
-    SCRATCH char *text = NULL;
     if (body->facet_count == 0) {
         stream_remove(stream, "facets");
         stream_remove(stream, "facets.set");
         return STATUS_OK;
     }
-    RETURN_IF_ERROR(names_attribute(&whole->facets.names, &text, error));
     RETURN_IF_ERROR(put(stream, "facets", TYPE_I4, body->facet_count, body->dim, &body->facet, error));
-    return stream_put(stream, "facets.set", TYPE_I4, body->facet_count, 1, text, array_take(&body->group),
-                      true, error);
+    return stream_put_named(stream, "facets.set", TYPE_I4, body->facet_count, &whole->facets.names,
+                            array_take(&body->group), true, error);
 }
 
 /* Drop the new groups without facets, as the wall of a region that bordered on no other. */

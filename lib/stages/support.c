@@ -198,14 +198,14 @@ enum status stage_interfaces(const struct stream *stream, const char *names, int
                              struct error *error)
 {
     struct cells cells;
-    FREED_BY(cell_regions_free) struct cell_regions regions = {0};
+    FREED_BY(groups_free) struct groups regions = {0};
     int32_t named = 0;
     *side = NULL;
     RETURN_IF_ERROR(stream_cells(stream, names != NULL, &cells, error));
     if (names == NULL && stream_find(stream, "cells.region") == NULL) {
         return STATUS_OK;
     }
-    RETURN_IF_ERROR(stream_regions(stream, &regions, error));
+    RETURN_IF_ERROR(stream_regions(stream, true, &regions, error));
     if (names == NULL && regions.names.count < 2) {
         return STATUS_OK;
     }
@@ -215,7 +215,7 @@ enum status stage_interfaces(const struct stream *stream, const char *names, int
     }
     RETURN_IF_ERROR(NEW_ARRAY(side, cells.count, error));
     for (int64_t c = 0; c < cells.count; c++) {
-        int32_t region = regions.of_cell[c];
+        int32_t region = regions.group[c];
         (*side)[c] = names == NULL ? region : place[region] > 0 ? place[region] - 1 : named;
     }
     return STATUS_OK;

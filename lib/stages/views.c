@@ -144,21 +144,25 @@ enum status names_of(const struct section *section, const char *key, struct name
     return section_attribute(section, key, list, size) ? names_split(names, list, error) : STATUS_OK;
 }
 
-enum status stream_regions(const struct stream *stream, struct cell_regions *regions, struct error *error)
+enum status stream_regions(const struct stream *stream, bool needed, struct groups *regions,
+                           struct error *error)
 {
     const struct section *section;
-    *regions = (struct cell_regions){0};
+    *regions = (struct groups){0};
+    if (!needed && stream_find(stream, "cells.region") == NULL) {
+        return STATUS_OK;
+    }
     RETURN_IF_ERROR(stream_view(stream, "cells.region", &section, error));
     RETURN_IF_ERROR(names_of(section, "names", &regions->names, error));
-    regions->of_cell = section->data;
+    regions->group = section->data;
     return section_check_indices(section, 0, regions->names.count, "region", " in names=", error);
 }
 
 enum status stream_facets(const struct stream *stream, bool needed, const struct cells *cells,
-                          struct named_facets *facets, struct error *error)
+                          struct groups *facets, struct error *error)
 {
     const struct section *facet, *group;
-    *facets = (struct named_facets){0};
+    *facets = (struct groups){0};
     if (!needed && stream_find(stream, "facets") == NULL) {
         return STATUS_OK;
     }
@@ -168,16 +172,16 @@ enum status stream_facets(const struct stream *stream, bool needed, const struct
     RETURN_IF_ERROR(names_of(group, "names", &facets->names, error));
     RETURN_IF_ERROR(section_check_indices(group, 0, facets->names.count, "group", " in names=", error));
     facets->count = facet->rows;
-    facets->facet = facet->data;
+    facets->node = facet->data;
     facets->group = group->data;
     return STATUS_OK;
 }
 
-enum status stream_sets(const struct stream *stream, bool needed, int64_t node_count, struct named_sets *sets,
+enum status stream_sets(const struct stream *stream, bool needed, int64_t node_count, struct groups *sets,
                         struct error *error)
 {
     const struct section *ptr;
-    *sets = (struct named_sets){0};
+    *sets = (struct groups){0};
     if (!needed && stream_find(stream, "sets.ptr") == NULL) {
         return STATUS_OK;
     }
@@ -340,17 +344,7 @@ const char *vector_attributes(int dim, const char *unit, char text[64])
     return text;
 }
 
-void cell_regions_free(struct cell_regions *regions)
+void groups_free(struct groups *groups)
 {
-    names_free(&regions->names);
-}
-
-void named_facets_free(struct named_facets *facets)
-{
-    names_free(&facets->names);
-}
-
-void named_sets_free(struct named_sets *sets)
-{
-    names_free(&sets->names);
+    names_free(&groups->names);
 }

@@ -38,35 +38,22 @@ MUST_CHECK enum status stream_field(const struct stream *stream, const char *nam
  * commas; to be freed also on failure. */
 MUST_CHECK enum status names_of(const struct section *section, const char *key, struct names *names,
                                 struct error *error);
-/* The region of each cell: of_cell[cells.count], each below names.count; to be freed, also on failure. */
-struct cell_regions {
-    const int32_t *of_cell;
+/* Named groups: the regions of the cells, groups of facets of the boundary, or sets of nodes. To be freed,
+ * also where reading them failed. Without groups all is 0, or it is an error if they are needed. */
+struct groups {
     struct names names;
+    int64_t count;           /* facets */
+    const int32_t *node;     /* count * dim: of the facets */
+    const int32_t *group;    /* of each cell or facet: below names.count */
+    struct neighbours lists; /* sets: an ascending list of nodes for each name */
 };
-MUST_CHECK enum status stream_regions(const struct stream *stream, struct cell_regions *regions,
+MUST_CHECK enum status stream_regions(const struct stream *stream, bool needed, struct groups *regions,
                                       struct error *error);
-void cell_regions_free(struct cell_regions *regions);
-
-/* Named facets of the boundary: facet[count * dim] nodes of the cells, group[count] a name for each. Without
- * facets count is 0, or it is an error if they are needed. To be freed, also on failure. */
-struct named_facets {
-    int64_t count;
-    const int32_t *facet, *group;
-    struct names names;
-};
 MUST_CHECK enum status stream_facets(const struct stream *stream, bool needed, const struct cells *cells,
-                                     struct named_facets *facets, struct error *error);
-void named_facets_free(struct named_facets *facets);
-
-/* Named sets of nodes: an ascending list for each name. It is an error if there are none but they are needed.
- * To be freed, also on failure. */
-struct named_sets {
-    struct neighbours lists;
-    struct names names;
-};
+                                     struct groups *facets, struct error *error);
 MUST_CHECK enum status stream_sets(const struct stream *stream, bool needed, int64_t node_count,
-                                   struct named_sets *sets, struct error *error);
-void named_sets_free(struct named_sets *sets);
+                                   struct groups *sets, struct error *error);
+void groups_free(struct groups *groups);
 
 /* Faces of the cells; those on the boundary come first. The view is not to be freed. */
 MUST_CHECK enum status stream_faces(const struct stream *stream, const struct cells *cells,

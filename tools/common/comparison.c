@@ -80,11 +80,11 @@ static enum status find_members(const struct side *a, struct findings *findings,
     if (stream_find(&a->stream, "cells.region") == NULL || cells->count == 0) {
         return STATUS_OK;
     }
-    RETURN_IF_ERROR(stream_regions(&a->stream, &findings->regions, error));
+    RETURN_IF_ERROR(stream_regions(&a->stream, true, &findings->regions, error));
     int64_t count = findings->regions.names.count;
     RETURN_IF_ERROR(NEW_ARRAY(&findings->member, cells->node_count * count, error));
     for (int64_t i = 0; i < cells->count * corners; i++) {
-        findings->member[cells->node[i] * count + findings->regions.of_cell[i / corners]] = true;
+        findings->member[cells->node[i] * count + findings->regions.group[i / corners]] = true;
     }
     return STATUS_OK;
 }
@@ -134,7 +134,7 @@ void findings_make(const struct tool *tool, const struct comparison_request *req
 
 void findings_free(struct findings *findings)
 {
-    cell_regions_free(&findings->regions);
+    groups_free(&findings->regions);
     free(findings->member);
     field_comparison_free(&findings->comparison);
     field_statistics_free(&findings->statistics);

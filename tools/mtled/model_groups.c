@@ -26,7 +26,7 @@ enum status model_facets(struct model *model, const struct scene_label *label, c
                          struct facet_set *set, struct error *error)
 {
     const struct faces *boundary = &model->assembly.boundary;
-    FREED_BY(named_facets_free) struct named_facets facets = {0};
+    FREED_BY(groups_free) struct groups facets = {0};
     int32_t *chosen;
     int dim = model->assembly.cells.dim;
     *set = (struct facet_set){0};
@@ -43,7 +43,7 @@ enum status model_facets(struct model *model, const struct scene_label *label, c
     RETURN_IF_ERROR(choose(label, names, "facet group", &facets.names, wanted, error));
     RETURN_IF_ERROR(MODEL_ARRAY(model, &chosen, facets.count * dim, error));
     NEW_SCRATCH(int64_t, face, facets.count, error);
-    RETURN_IF_ERROR(faces_find(boundary, facets.count, facets.facet, face, error));
+    RETURN_IF_ERROR(faces_find(boundary, facets.count, facets.node, face, error));
     NEW_SCRATCH(bool, taken, boundary->count, error);
     for (int64_t f = 0; f < facets.count; f++) {
         if (!wanted[facets.group[f]] || (face[f] >= 0 && taken[face[f]])) {
@@ -52,7 +52,7 @@ enum status model_facets(struct model *model, const struct scene_label *label, c
         if (face[f] >= 0) {
             taken[face[f]] = true;
         }
-        memcpy(chosen + set->count++ * dim, facets.facet + f * dim, (size_t)dim * sizeof *chosen);
+        memcpy(chosen + set->count++ * dim, facets.node + f * dim, (size_t)dim * sizeof *chosen);
     }
     set->facet = chosen;
     if (set->count == 0) {
@@ -64,7 +64,7 @@ enum status model_facets(struct model *model, const struct scene_label *label, c
 enum status model_nodes(struct model *model, const struct scene_label *label, const struct name_list *names,
                         const int32_t **nodes, int64_t *count, struct error *error)
 {
-    FREED_BY(named_sets_free) struct named_sets sets = {0};
+    FREED_BY(groups_free) struct groups sets = {0};
     int32_t *chosen;
     int64_t node_count = model->assembly.cells.node_count;
     *count = 0;

@@ -135,7 +135,7 @@ static enum status stiffest_first(struct stream *stream, int64_t cells, const in
 }
 
 /* Say where supports reach across a jump; `distance`: they reach across everything. */
-static void note_jump(struct model *model, const struct faces *faces, const struct cell_regions *regions,
+static void note_jump(struct model *model, const struct faces *faces, const struct groups *regions,
                       const struct found *found, bool distance)
 {
     const struct cells *cells = &model->assembly.cells;
@@ -144,7 +144,7 @@ static void note_jump(struct model *model, const struct faces *faces, const stru
     char place[96];
     vector_middle(cells->dim, cells->x, cells->dim, node, middle);
     point_text(cells->dim, middle, place);
-    int32_t first = regions->of_cell[cell[0]], second = regions->of_cell[cell[1]];
+    int32_t first = regions->group[cell[0]], second = regions->group[cell[1]];
     (void)fail(&model->interfaces, STATUS_OK,
                "the shear modulus jumps %.3g : 1 between cells of %s%s%s at %s, and supports reach across: "
                "stress and forces are wrong there: %s",
@@ -158,7 +158,7 @@ enum status model_interfaces(struct model *model, struct stream *stream, bool *r
 {
     const struct assembly *input = &model->assembly;
     FREED_BY(faces_free) struct faces built = {0};
-    FREED_BY(cell_regions_free) struct cell_regions regions = {0};
+    FREED_BY(groups_free) struct groups regions = {0};
     struct recorded recorded;
     bool divided = false;
     NEW_SCRATCH(struct moduli, of, input->cells.count, error);
@@ -167,13 +167,13 @@ enum status model_interfaces(struct model *model, struct stream *stream, bool *r
         RETURN_IF_ERROR(faces_build(&input->cells, false, &built, error));
     }
     const struct faces *faces = input->smoothed ? &input->faces : &built;
-    RETURN_IF_ERROR(stream_regions(stream, &regions, error));
+    RETURN_IF_ERROR(stream_regions(stream, true, &regions, error));
     RETURN_IF_ERROR(stage_recorded(stream, "support", &recorded, error));
     read_moduli(input, of);
     const int32_t *side = input->cell_side;
     bool distance = recorded.support.visibility == VISIBILITY_DISTANCE;
     if (!distance) {
-        divided = divide(input, faces, regions.of_cell, of, divided_side);
+        divided = divide(input, faces, regions.group, of, divided_side);
         side = divided ? divided_side : side;
     }
     struct found found = search(faces, side, of);

@@ -89,13 +89,13 @@ static enum status materials_of_regions(const struct scene *scene, const struct 
 static enum status materials_of_cells(struct model *model, struct error *error)
 {
     const struct cells *cells = &model->assembly.cells;
-    FREED_BY(cell_regions_free) struct cell_regions regions = {0};
-    RETURN_IF_ERROR(stream_regions(model->stream, &regions, error));
+    FREED_BY(groups_free) struct groups regions = {0};
+    RETURN_IF_ERROR(stream_regions(model->stream, true, &regions, error));
     NEW_SCRATCH(int32_t, material, regions.names.count, error);
     RETURN_IF_ERROR(NEW_ARRAY(&model->assembly.materials.of_cell, cells->count, error));
     RETURN_IF_ERROR(materials_of_regions(model->scene, &regions.names, material, error));
     for (int64_t c = 0; c < cells->count; c++) {
-        int32_t region = regions.of_cell[c];
+        int32_t region = regions.group[c];
         if (material[region] < 0) {
             return fail(
                 error, STATUS_INPUT,

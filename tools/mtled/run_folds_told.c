@@ -7,14 +7,14 @@
 static void name_facet(const struct run *run, int64_t f, char *name, size_t size)
 {
     int dim = run->scene->dim;
-    FREED_BY(named_facets_free) struct named_facets facets = {0};
+    FREED_BY(groups_free) struct groups facets = {0};
     struct error ignored;
     int32_t key[3], other[3];
     enum status status = stream_facets(run->stream, false, &run->model->assembly.cells, &facets, &ignored);
     snprintf(name, size, "the boundary");
     face_key(dim, run->folds.folds.input.facet + f * dim, key);
     for (int64_t i = 0; i < facets.count && status == STATUS_OK; i++) {
-        face_key(dim, facets.facet + i * dim, other);
+        face_key(dim, facets.node + i * dim, other);
         if (memcmp(key, other, sizeof key) == 0) {
             snprintf(name, size, "%s", facets.names.name[facets.group[i]]);
             break;

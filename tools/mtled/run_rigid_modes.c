@@ -142,13 +142,13 @@ static enum status body_text(const struct model *model, const struct bodies *bod
                              char text[256], struct error *error)
 {
     char place[96];
-    FREED_BY(cell_regions_free) struct cell_regions regions = {0};
+    FREED_BY(groups_free) struct groups regions = {0};
     snprintf(text, 256, "the body");
     if (bodies->count > 1) {
-        RETURN_IF_ERROR(stream_regions(model->stream, &regions, error));
+        RETURN_IF_ERROR(stream_regions(model->stream, true, &regions, error));
         point_text(model->assembly.cells.dim, bodies->modes[b].centre, place);
         snprintf(text, 256, "body %lld (region %s, near %s)", (long long)b + 1,
-                 regions.names.name[regions.of_cell[bodies->cell[b]]], place);
+                 regions.names.name[regions.group[bodies->cell[b]]], place);
     }
     return STATUS_OK;
 }

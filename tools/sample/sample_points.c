@@ -23,12 +23,12 @@ void sample_points_table(const struct tool *tool, const char *file, double unit,
 static void choose_regions(const struct tool *tool, const struct stream *stream, char *list,
                            struct sample_points *rows)
 {
-    FREED_BY(cell_regions_free) struct cell_regions regions = {0};
+    FREED_BY(groups_free) struct groups regions = {0};
     const struct names *names = &regions.names;
     const struct section *cell;
     int64_t kept = 0;
     TOOL_TRY(tool, stream_view(stream, "points.cell", &cell, &error));
-    TOOL_TRY(tool, stream_regions(stream, &regions, &error));
+    TOOL_TRY(tool, stream_regions(stream, true, &regions, &error));
     TOOL_TRY(tool, section_check_indices(cell, 0, stream_find(stream, "cells.region")->rows, "cell",
                                          " of a region", &error));
     TOOL_SCRATCH(tool, bool, wanted, names->count);
@@ -40,7 +40,7 @@ static void choose_regions(const struct tool *tool, const struct stream *stream,
         wanted[index] = true;
     }
     for (int64_t q = 0; q < rows->count; q++) {
-        if (wanted[regions.of_cell[((const int32_t *)cell->data)[q]]]) {
+        if (wanted[regions.group[((const int32_t *)cell->data)[q]]]) {
             memmove(rows->x + kept++ * rows->dim, rows->x + q * rows->dim,
                     (size_t)rows->dim * sizeof *rows->x);
         }

@@ -163,13 +163,12 @@ static enum status add_groups(struct stream *stream, const char *prefix, const s
 static enum status derived_add(struct stream *stream, const struct cells *cells, int64_t frame,
                                struct error *error)
 {
-    FREED_BY(named_facets_free) struct named_facets facets = {0};
-    FREED_BY(named_sets_free) struct named_sets sets = {0};
+    FREED_BY(groups_free) struct groups facets = {0}, sets = {0};
     const struct neighbours *lists = &sets.lists;
     RETURN_IF_ERROR(add_invariants(stream, frame, error));
     RETURN_IF_ERROR(stream_facets(stream, false, cells, &facets, error));
     RETURN_IF_ERROR(add_groups(stream, "facets", &facets.names, cells->node_count, facets.count, cells->dim,
-                               facets.facet, facets.group, error));
+                               facets.node, facets.group, error));
     RETURN_IF_ERROR(stream_sets(stream, false, cells->node_count, &sets, error));
     int64_t count = lists->count > 0 ? lists->ptr[lists->count] : 0;
     NEW_SCRATCH(int32_t, group, count, error);
@@ -307,17 +306,15 @@ enum status plot_time(const struct plot *plot, int64_t frame, double *time, stru
 static enum status find_mesh(struct plot *plot, struct error *error)
 {
     struct cells *cells = &plot->cells;
-    struct cell_regions *regions = &plot->regions;
+    struct groups *regions = &plot->regions;
     RETURN_IF_ERROR(stream_cells(&plot->stream, false, cells, error));
     plot->mesh = (struct vtk_mesh){.dim = cells->dim,
                                    .node_count = cells->node_count,
                                    .x = cells->x,
                                    .cell_count = cells->count,
                                    .node = cells->count > 0 ? cells->node : NULL};
-    if (cells->count > 0 && stream_find(&plot->stream, "cells.region") != NULL) {
-        RETURN_IF_ERROR(stream_regions(&plot->stream, regions, error));
-        plot->mesh.regions = regions->names;
-    }
+    RETURN_IF_ERROR(cells->count > 0 ? stream_regions(&plot->stream, false, regions, error) : STATUS_OK);
+    plot->mesh.regions = regions->names;
     return STATUS_OK;
 }
 
@@ -331,6 +328,6 @@ enum status plot_find(struct plot *plot, struct error *error)
 void plot_free(struct plot *plot)
 {
     stream_free(&plot->stream);
-    names_free(&plot->regions.names);
+    groups_free(&plot->regions);
     FREE_ALL(plot->fields, plot->labels, plot->frames);
 }

@@ -9,7 +9,7 @@ struct plot {
     struct stream stream;
     int64_t given; /* of its sections; those behind are fields derived for the frame chosen last */
     struct cells cells;
-    struct cell_regions regions;
+    struct groups regions;
     struct vtk_mesh mesh;     /* a view of the cells and regions */
     struct vtk_field *fields; /* of the frame chosen last */
     char (*labels)[128];      /* names of the fields of frames */

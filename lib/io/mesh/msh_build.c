@@ -342,15 +342,6 @@ void mesh_free(struct mesh *mesh)
 
 /* ---- into a stream ---- */
 
-/* A section whose header lists names. */
-static enum status put_named(struct stream *stream, const char *section, enum element_type type, int64_t rows,
-                             const struct names *names, void *data, struct error *error)
-{
-    SCRATCH char *attributes = NULL;
-    RETURN_IF_ERROR(names_attribute(names, &attributes, error));
-    return stream_put(stream, section, type, rows, 1, attributes, data, false, error);
-}
-
 enum status mesh_put(const struct mesh *mesh, struct stream *stream, struct error *error)
 {
     int dim = mesh->dim;
@@ -360,18 +351,18 @@ enum status mesh_put(const struct mesh *mesh, struct stream *stream, struct erro
     if (mesh->cell_count > 0) {
         RETURN_IF_ERROR(
             stream_put(stream, "cells", TYPE_I4, mesh->cell_count, dim + 1, "", mesh->cells, false, error));
-        RETURN_IF_ERROR(put_named(stream, "cells.region", TYPE_I4, mesh->cell_count, &mesh->regions,
-                                  mesh->cell_region, error));
+        RETURN_IF_ERROR(stream_put_named(stream, "cells.region", TYPE_I4, mesh->cell_count, &mesh->regions,
+                                         mesh->cell_region, false, error));
     }
     if (mesh->facet_count > 0) {
         RETURN_IF_ERROR(
             stream_put(stream, "facets", TYPE_I4, mesh->facet_count, dim, "", mesh->facets, false, error));
-        RETURN_IF_ERROR(put_named(stream, "facets.set", TYPE_I4, mesh->facet_count, &mesh->facet_sets,
-                                  mesh->facet_set, error));
+        RETURN_IF_ERROR(stream_put_named(stream, "facets.set", TYPE_I4, mesh->facet_count, &mesh->facet_sets,
+                                         mesh->facet_set, false, error));
     }
     if (sets > 0) {
-        RETURN_IF_ERROR(
-            put_named(stream, "sets.ptr", TYPE_I8, sets + 1, &mesh->node_sets, mesh->set_ptr, error));
+        RETURN_IF_ERROR(stream_put_named(stream, "sets.ptr", TYPE_I8, sets + 1, &mesh->node_sets,
+                                         mesh->set_ptr, false, error));
         RETURN_IF_ERROR(
             stream_put(stream, "sets.idx", TYPE_I4, mesh->set_ptr[sets], 1, "", mesh->set_idx, false, error));
     }

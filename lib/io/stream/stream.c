@@ -244,6 +244,18 @@ enum status stream_put(struct stream *stream, const char *name, enum element_typ
     return status;
 }
 
+enum status stream_put_named(struct stream *stream, const char *name, enum element_type type, int64_t rows,
+                             const struct names *names, void *data, bool owned, struct error *error)
+{
+    SCRATCH char *attributes = NULL;
+    if (asprintf(&attributes, "names=%s", names->list != NULL ? names->list : "") < 0) {
+        attributes = NULL;
+        free(owned ? data : NULL);
+        return fail_memory(error, name);
+    }
+    return stream_put(stream, name, type, rows, 1, attributes, data, owned, error);
+}
+
 void section_give_back(const struct stream *stream, const struct section *section, bool for_good)
 {
     uintptr_t from = (uintptr_t)section->data, mapped = (uintptr_t)stream->mapping;

@@ -103,6 +103,11 @@ MUST_CHECK enum status stream_put(struct stream *stream, const char *name, enum 
                                   int64_t rows, int64_t cols, const char *attributes, void *data, bool owned,
                                   struct error *error);
 
+/* The same for a section of one column, whose attribute names= lists names. */
+MUST_CHECK enum status stream_put_named(struct stream *stream, const char *name, enum element_type type,
+                                        int64_t rows, const struct names *names, void *data, bool owned,
+                                        struct error *error);
+
 /* Remove a section, if it exists. */
 void stream_remove(struct stream *stream, const char *name);
 

@@ -27,27 +27,27 @@ static enum status set_members(struct group_list *list, int64_t count, const int
 
 /* facet[rows]: the facet of the boundary of each row of `facets`. The boundary takes over its order of nodes,
  * so that unchanged groups are written as they were. */
-static enum status find_facets(struct group_body *body, const struct named_facets *named, int32_t *facet,
+static enum status find_facets(struct group_body *body, const struct groups *named, int32_t *facet,
                                struct error *error)
 {
     int dim = body->cells.dim;
     NEW_SCRATCH(int64_t, found, named->count, error);
-    RETURN_IF_ERROR(faces_find(&body->boundary, named->count, named->facet, found, error));
+    RETURN_IF_ERROR(faces_find(&body->boundary, named->count, named->node, found, error));
     for (int64_t i = 0; i < named->count; i++) {
         if (found[i] < 0) {
             return fail(error, STATUS_INPUT, "facets: row %lld: no face of exactly one cell: run nodes again",
                         (long long)i);
         }
         facet[i] = (int32_t)found[i];
-        memcpy(&body->boundary.node[found[i] * dim], &named->facet[i * dim],
-               (size_t)dim * sizeof *named->facet);
+        memcpy(&body->boundary.node[found[i] * dim], &named->node[i * dim],
+               (size_t)dim * sizeof *named->node);
     }
     return STATUS_OK;
 }
 
 static enum status read_facets(const struct stream *stream, struct group_body *body, struct error *error)
 {
-    FREED_BY(named_facets_free) struct named_facets named = {0};
+    FREED_BY(groups_free) struct groups named = {0};
     struct group_list *list = &body->groups[GROUP_FACETS];
     RETURN_IF_ERROR(stream_facets(stream, false, &body->cells, &named, error));
     NEW_SCRATCH(int32_t, facet, named.count, error);
@@ -60,7 +60,7 @@ static enum status read_facets(const struct stream *stream, struct group_body *b
 static enum status read_sets(const struct stream *stream, struct group_body *body, struct error *error)
 {
     struct group_list *list = &body->groups[GROUP_NODES];
-    FREED_BY(named_sets_free) struct named_sets sets = {0};
+    FREED_BY(groups_free) struct groups sets = {0};
     RETURN_IF_ERROR(stream_sets(stream, false, body->cells.node_count, &sets, error));
     list->names = sets.names;
     sets.names = (struct names){0};
@@ -76,15 +76,15 @@ static enum status read_sets(const struct stream *stream, struct group_body *bod
 
 static enum status read_regions(const struct stream *stream, struct group_body *body, struct error *error)
 {
-    FREED_BY(cell_regions_free) struct cell_regions regions = {0};
+    FREED_BY(groups_free) struct groups regions = {0};
     struct group_list *list = &body->groups[GROUP_REGION];
-    if (stream_find(stream, "cells.region") == NULL) {
+    RETURN_IF_ERROR(stream_regions(stream, false, &regions, error));
+    if (regions.group == NULL) {
         return STATUS_OK;
     }
-    RETURN_IF_ERROR(stream_regions(stream, &regions, error));
     list->names = regions.names;
     regions.names = (struct names){0};
-    return set_members(list, body->cells.count, regions.of_cell, NULL, error);
+    return set_members(list, body->cells.count, regions.group, NULL, error);
 }
 
 enum status group_body_read(const struct stream *stream, struct group_body *body, struct error *error)
@@ -202,13 +202,17 @@ static enum status list_items(const struct group_list *list, int64_t **ptr, int3
     return STATUS_OK;
 }
 
-static enum status write_facets(const struct group_body *body, const char *names, struct stream *stream,
-                                struct error *error)
+static enum status write_facets(const struct group_body *body, struct stream *stream, struct error *error)
 {
     const struct group_list *list = &body->groups[GROUP_FACETS];
     int dim = body->boundary.dim;
     SCRATCH int64_t *ptr = NULL;
     SCRATCH int32_t *idx = NULL;
+    if (list->count == 0) {
+        stream_remove(stream, "facets");
+        stream_remove(stream, "facets.set");
+        return STATUS_OK;
+    }
     RETURN_IF_ERROR(list_items(list, &ptr, &idx, error));
     NEW_SCRATCH(int32_t, node, list->count * dim, error);
     NEW_SCRATCH(int32_t, set, list->count, error);
@@ -220,23 +224,27 @@ static enum status write_facets(const struct group_body *body, const char *names
     }
     RETURN_IF_ERROR(
         stream_put(stream, "facets", TYPE_I4, list->count, dim, "", array_take(&node), true, error));
-    return stream_put(stream, "facets.set", TYPE_I4, list->count, 1, names, array_take(&set), true, error);
+    return stream_put_named(stream, "facets.set", TYPE_I4, list->count, &list->names, array_take(&set), true,
+                            error);
 }
 
-static enum status write_sets(const struct group_body *body, const char *names, struct stream *stream,
-                              struct error *error)
+static enum status write_sets(const struct group_body *body, struct stream *stream, struct error *error)
 {
     const struct group_list *list = &body->groups[GROUP_NODES];
     SCRATCH int64_t *ptr = NULL;
     SCRATCH int32_t *idx = NULL;
+    if (list->names.count == 0) {
+        stream_remove(stream, "sets.ptr");
+        stream_remove(stream, "sets.idx");
+        return STATUS_OK;
+    }
     RETURN_IF_ERROR(list_items(list, &ptr, &idx, error));
-    RETURN_IF_ERROR(stream_put(stream, "sets.ptr", TYPE_I8, list->names.count + 1, 1, names, array_take(&ptr),
-                               true, error));
+    RETURN_IF_ERROR(stream_put_named(stream, "sets.ptr", TYPE_I8, list->names.count + 1, &list->names,
+                                     array_take(&ptr), true, error));
     return stream_put(stream, "sets.idx", TYPE_I4, list->count, 1, "", array_take(&idx), true, error);
 }
 
-static enum status write_regions(const struct group_body *body, const char *names, struct stream *stream,
-                                 struct error *error)
+static enum status write_regions(const struct group_body *body, struct stream *stream, struct error *error)
 {
     const struct group_list *list = &body->groups[GROUP_REGION];
     if (list->count < body->cells.count) {
@@ -249,27 +257,14 @@ static enum status write_regions(const struct group_body *body, const char *name
     for (int64_t i = 0; i < list->count; i++) {
         region[list->member[i].item] = list->member[i].group;
     }
-    return stream_put(stream, "cells.region", TYPE_I4, body->cells.count, 1, names, array_take(&region), true,
-                      error);
+    return stream_put_named(stream, "cells.region", TYPE_I4, body->cells.count, &list->names,
+                            array_take(&region), true, error);
 }
 
 enum status group_body_write(const struct group_body *body, struct stream *stream, struct error *error)
 {
-    static enum status (*const write[])(const struct group_body *body, const char *names,
-                                        struct stream *stream,
-                                        struct error *error) = {write_facets, write_sets, write_regions};
-    static const char *const sections[][2] = {{"facets", "facets.set"}, {"sets.ptr", "sets.idx"}};
-    for (int kind = 0; kind < GROUP_KINDS; kind++) {
-        const struct group_list *list = &body->groups[kind];
-        SCRATCH char *names = NULL;
-        RETURN_IF_ERROR(names_attribute(&list->names, &names, error));
-        bool is_empty = kind == GROUP_FACETS ? list->count == 0 : list->names.count == 0;
-        for (int s = 0; s < 2 && list->changed && is_empty && kind != GROUP_REGION; s++) {
-            stream_remove(stream, sections[kind][s]);
-        }
-        if (list->changed && !(is_empty && kind != GROUP_REGION)) {
-            RETURN_IF_ERROR(write[kind](body, names, stream, error));
-        }
-    }
-    return STATUS_OK;
+    const struct group_list *groups = body->groups;
+    RETURN_IF_ERROR(groups[GROUP_FACETS].changed ? write_facets(body, stream, error) : STATUS_OK);
+    RETURN_IF_ERROR(groups[GROUP_NODES].changed ? write_sets(body, stream, error) : STATUS_OK);
+    return groups[GROUP_REGION].changed ? write_regions(body, stream, error) : STATUS_OK;
 }
