@@ -64,13 +64,13 @@ int main(int argc, char *argv[])
     struct side a, b;
     struct findings findings;
     tool_begin(&tool, usage, 2, 2, argc, argv);
-    struct comparison_request request = comparison_parse(&tool);
-    side_read(&tool, tool.operands[0], request.field, &a);
-    side_read(&tool, tool.operands[1], request.field, &b);
-    findings_make(&tool, &request, &a, &b, &findings);
-    print_findings(&findings, &a.field.cells, request.percentiles);
+    const char *field = comparison_field(&tool);
+    side_read(&tool, tool.operands[0], field, &a);
+    side_read(&tool, tool.operands[1], field, &b);
+    findings_make(&tool, tool_value(&tool, "region"), &a, &b, &findings);
+    print_findings(&tool, &findings, &a.field.cells);
     print_relative(&findings);
     print_iteration("iteration_a", &a);
     print_iteration("iteration_b", &b);
-    return comparison_end(&tool, &request, &a, &b, &findings, "difference");
+    return comparison_end(&tool, &a, &b, &findings, "difference");
 }

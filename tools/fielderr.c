@@ -68,29 +68,11 @@ static const char usage[] =
 /* The ratio of the cells per direction by the ratio in use; values outside of these bounds are noted. */
 static const double least_agreement = 0.65, most_agreement = 1.5;
 
-/* The options. */
-struct request {
-    double order; /* 0: none given */
-    double ratio;
-    struct comparison_request comparison;
-};
-
-static struct request parse(const struct tool *tool)
-{
-    struct request request = {.comparison = comparison_parse(tool)};
-    if (tool_given(tool, "order") && tool->operand_count > 2) {
-        tool_fail(tool, STATUS_INPUT, "-p: of three results the order is observed");
-    }
-    request.order = tool_number(tool, "order", 0.01, 4.0, 0.0);
-    request.ratio = tool_number(tool, "ratio", 1.01, 100.0, 2.0);
-    return request;
-}
-
 /* Exit unless the second cloud is coarser. Returns the ratio of the cells per direction. */
-static double check_coarser(const struct tool *tool, const struct request *request, const struct side *fine,
+static double check_coarser(const struct tool *tool, double ratio, const struct side *fine,
                             const struct side *coarse)
 {
-    sides_check(tool, fine, coarse, request->comparison.field);
+    sides_check(tool, fine, coarse);
     double found = field_error_ratio(&fine->field.cells, &coarse->field.cells);
     if (!(found > 1.0)) {
         tool_fail(tool, STATUS_INPUT,
@@ -98,9 +80,9 @@ static double check_coarser(const struct tool *tool, const struct request *reque
                   fine->name, (long long)fine->field.cells.node_count, coarse->name,
                   (long long)coarse->field.cells.node_count);
     }
-    if (found < least_agreement * request->ratio || found > most_agreement * request->ratio) {
+    if (found < least_agreement * ratio || found > most_agreement * ratio) {
         tool_note(tool, "%s has %.2g times as many cells per direction as %s, not %.3g: see -r", fine->name,
-                  found, coarse->name, request->ratio);
+                  found, coarse->name, ratio);
     }
     return found;
 }
@@ -156,33 +138,30 @@ static void print_energy(const struct side *fine, const struct side *coarse, dou
 }
 
 /* The average difference of two results over all nodes of the first. */
-static double average_difference(const struct tool *tool, const struct request *request,
-                                 const struct side *first, const struct side *second)
+static double average_difference(const struct tool *tool, const struct side *first, const struct side *second)
 {
     FREED_BY(findings_free) struct findings findings = {0};
-    struct comparison_request everywhere = request->comparison;
-    everywhere.region = NULL;
-    findings_make(tool, &everywhere, first, second, &findings);
+    findings_make(tool, NULL, first, second, &findings);
     return findings.statistics.average;
 }
 
 /* The assumed order, or that observed from the average differences of three results. These are averages over
  * the whole body even if a region is requested: the error of a region partly comes from elsewhere, and an
  * average over more nodes varies less. */
-static double choose_order(struct tool *tool, const struct request *request, const struct side *fine,
+static double choose_order(struct tool *tool, double ratio, const struct side *fine,
                            const struct side *coarse, const struct findings *findings)
 {
     struct side coarser;
     if (tool->operand_count < 3) {
-        return request->order > 0.0 ? request->order : FIELD_ERROR_ORDER;
+        return tool_number(tool, "order", 0.01, 4.0, FIELD_ERROR_ORDER);
     }
-    side_read(tool, tool->operands[2], request->comparison.field, &coarser);
-    (void)check_coarser(tool, request, coarse, &coarser);
-    double near = request->comparison.region == NULL ? findings->statistics.average
-                                                     : average_difference(tool, request, fine, coarse);
-    double far = average_difference(tool, request, coarse, &coarser);
+    side_read(tool, tool->operands[2], fine->section->name, &coarser);
+    (void)check_coarser(tool, ratio, coarse, &coarser);
+    double near =
+        tool_given(tool, "region") ? average_difference(tool, fine, coarse) : findings->statistics.average;
+    double far = average_difference(tool, coarse, &coarser);
     stream_free(&coarser.stream);
-    return field_error_order(near, far, request->ratio);
+    return field_error_order(near, far, ratio);
 }
 
 /* Print the error of the iterations of both results that the estimate, `share` of their difference, contains,
@@ -226,26 +205,30 @@ int main(int argc, char *argv[])
     struct side fine, coarse;
     struct findings findings;
     tool_begin(&tool, usage, 2, 3, argc, argv);
-    struct request request = parse(&tool);
-    const struct comparison_request *comparison = &request.comparison;
-    side_read(&tool, tool.operands[0], comparison->field, &fine);
-    side_read(&tool, tool.operands[1], comparison->field, &coarse);
-    double found = check_coarser(&tool, &request, &fine, &coarse);
-    findings_make(&tool, comparison, &fine, &coarse, &findings);
-    double order = choose_order(&tool, &request, &fine, &coarse, &findings);
-    double share = field_error_share(request.ratio, order);
+    const char *field = comparison_field(&tool), *region = tool_value(&tool, "region");
+    if (tool_given(&tool, "order") && tool.operand_count > 2) {
+        tool_fail(&tool, STATUS_INPUT, "-p: of three results the order is observed");
+    }
+    (void)tool_number(&tool, "order", 0.01, 4.0, 0.0); /* usage errors before waiting for the input */
+    double ratio = tool_number(&tool, "ratio", 1.01, 100.0, 2.0);
+    side_read(&tool, tool.operands[0], field, &fine);
+    side_read(&tool, tool.operands[1], field, &coarse);
+    double found = check_coarser(&tool, ratio, &fine, &coarse);
+    findings_make(&tool, region, &fine, &coarse, &findings);
+    double order = choose_order(&tool, ratio, &fine, &coarse, &findings);
+    double share = field_error_share(ratio, order);
     scale(&findings, share, fine.field.cells.node_count);
     findings.reference = field_largest(fine.field.cells.node_count, fine.field.cols, fine.field.values);
-    print_findings(&findings, &fine.field.cells, comparison->percentiles);
-    if (comparison->region == NULL && fine.field.cells.count > 0) {
+    print_findings(&tool, &findings, &fine.field.cells);
+    if (region == NULL && fine.field.cells.count > 0) {
         print_quantity("mean", NULL, field_error_mean(&fine.field.cells, findings.comparison.difference));
     }
     print_relative(&findings);
     print_iteration(&tool, &fine, &coarse, share, findings.statistics.average);
     print_quantity("order", NULL, order);
-    print_quantity("ratio", NULL, request.ratio);
+    print_quantity("ratio", NULL, ratio);
     print_quantity("cells_ratio", NULL, found);
     TOOL_TRY(&tool, print_forces(&fine, &coarse, share, &error));
     print_energy(&fine, &coarse, share);
-    return comparison_end(&tool, comparison, &fine, &coarse, &findings, "error");
+    return comparison_end(&tool, &fine, &coarse, &findings, "error");
 }

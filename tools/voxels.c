@@ -205,10 +205,9 @@ static void report(const struct tool *tool, const struct label_image *image, con
     }
 }
 
-static void write_stream(const struct tool *tool, const struct label_image *image,
-                         const struct label_cells *result)
+static void write_stream(const struct tool *tool, const struct label_image *image, struct label_cells *result)
 {
-    FREED_BY(label_mesh_free) struct mesh mesh = {0};
+    FREED_BY(mesh_free) struct mesh mesh = {0};
     FREED_BY(stream_free) struct stream stream = {0};
     TOOL_TRY(tool, label_mesh_make(image, result, &mesh, &error));
     TOOL_TRY(tool, mesh_put(&mesh, &stream, &error));
@@ -251,13 +250,11 @@ int main(int argc, char *argv[])
     tool_begin(&tool, usage, 0, argc, argc, argv);
     check_options(&tool);
     double spacing = tool_length(&tool, "spacing", 0);
-    struct label_image_options wanted = {.table = tool_value(&tool, "labels"),
-                                         .unit = tool_length_unit(&tool, "unit", 0),
-                                         .slice = tool_value(&tool, "slice")};
-    label_image_read(&tool, tool.operands, &wanted, &image);
-    struct label_surface_options surface = {.gap = tool_length(&tool, "gap", 0)};
+    (void)tool_length(&tool, "gap", 0); /* usage errors before waiting for the input */
+    label_image_read(&tool, &image);
+    struct label_surface_options surface = {0};
     if (tool_given(&tool, "surface")) {
-        label_surface_parse(&tool, &image, tool_value(&tool, "surface"), &surface);
+        label_surface_parse(&tool, &image, &surface);
         for (int32_t l = 0; l < image.labels.count; l++) {
             image.keep[l] = l == surface.inner;
         }

@@ -14,16 +14,12 @@ static double tolerance_of(const struct tool *tool, const char *option)
     return is_plain ? tool_number(tool, option, 0.0, 1e300, INFINITY) : tool_length(tool, option, INFINITY);
 }
 
-struct comparison_request comparison_parse(const struct tool *tool)
+const char *comparison_field(const struct tool *tool)
 {
     tool_requires(tool, "text", "map");
-    return (struct comparison_request){.tol_avg = tolerance_of(tool, "tol-avg"),
-                                       .tol_max = tolerance_of(tool, "tol-max"),
-                                       .field = tool_given(tool, "field") ? tool_value(tool, "field") : "u",
-                                       .region = tool_value(tool, "region"),
-                                       .map = tool_value(tool, "map"),
-                                       .skip_outside = tool_given(tool, "skip-outside"),
-                                       .percentiles = tool_given(tool, "percentiles")};
+    (void)tolerance_of(tool, "tol-avg");
+    (void)tolerance_of(tool, "tol-max");
+    return tool_given(tool, "field") ? tool_value(tool, "field") : "u";
 }
 
 static enum status view_side(struct side *side, const char *field, struct error *error)
@@ -51,21 +47,20 @@ void side_read(const struct tool *tool, const char *file, const char *field, str
     TOOL_TRY(tool, fail_in(&error, view_side(side, field, &error), "%s", side->name));
 }
 
-void sides_check(const struct tool *tool, const struct side *first, const struct side *second,
-                 const char *name)
+void sides_check(const struct tool *tool, const struct side *first, const struct side *second)
 {
     const struct nodal_field *a = &first->field, *b = &second->field;
     if (a->cells.dim != b->cells.dim || a->cols != b->cols) {
-        tool_fail(tool, STATUS_INPUT, "%s: %lld columns in %dD against %lld columns in %dD", name,
-                  (long long)a->cols, a->cells.dim, (long long)b->cols, b->cells.dim);
+        tool_fail(tool, STATUS_INPUT, "%s: %lld columns in %dD against %lld columns in %dD",
+                  first->section->name, (long long)a->cols, a->cells.dim, (long long)b->cols, b->cells.dim);
     }
 }
 
-static bool has_unknown(const struct tool *tool, const struct side *side, const char *field)
+static bool has_unknown(const struct tool *tool, const struct side *side)
 {
     for (int64_t i = 0; i < side->field.cells.node_count * side->field.cols; i++) {
         if (!isfinite(side->field.values[i])) {
-            tool_note(tool, "%s: %s: row %lld: not a finite number", side->name, field,
+            tool_note(tool, "%s: %s: row %lld: not a finite number", side->name, side->section->name,
                       (long long)(i / side->field.cols));
             return true;
         }
@@ -109,17 +104,18 @@ static enum status choose_nodes(const struct findings *findings, int64_t node_co
     return STATUS_OK;
 }
 
-void findings_make(const struct tool *tool, const struct comparison_request *request, const struct side *a,
-                   const struct side *b, struct findings *findings)
+void findings_make(const struct tool *tool, const char *region, const struct side *a, const struct side *b,
+                   struct findings *findings)
 {
     struct error why;
     struct field_comparison *comparison = &findings->comparison;
     SCRATCH bool *chosen = NULL;
     *findings = (struct findings){.member = NULL};
-    sides_check(tool, a, b, request->field);
+    sides_check(tool, a, b);
     TOOL_TRY(tool, find_members(a, findings, &error));
-    TOOL_TRY(tool, choose_nodes(findings, a->field.cells.node_count, request->region, &chosen, &error));
-    enum status status = field_compare(&a->field, &b->field, chosen, request->skip_outside, comparison, &why);
+    TOOL_TRY(tool, choose_nodes(findings, a->field.cells.node_count, region, &chosen, &error));
+    enum status status =
+        field_compare(&a->field, &b->field, chosen, tool_given(tool, "skip-outside"), comparison, &why);
     if (status != STATUS_OK) {
         tool_fail(tool, status, "%s%s", why.text,
                   comparison->outside > 0 ? ": --skip-outside leaves them out" : "");
@@ -162,14 +158,14 @@ static double relative(double value, double reference)
     return value == 0.0 ? 0.0 : value / reference;
 }
 
-void print_findings(const struct findings *findings, const struct cells *cells, bool percentiles)
+void print_findings(const struct tool *tool, const struct findings *findings, const struct cells *cells)
 {
     const struct field_comparison *comparison = &findings->comparison;
     const struct field_statistics *all = &findings->statistics;
     print_quantity("avg", NULL, all->average);
     print_quantity("max", NULL, all->largest);
     print_quantity("rmse", NULL, all->rmse);
-    print_percentiles(all, percentiles);
+    print_percentiles(all, tool_given(tool, "percentiles"));
     printf("n\t%lld\n", (long long)all->count);
     if (!comparison->coincide) {
         printf("outside\t%lld\n", (long long)comparison->outside);
@@ -247,9 +243,10 @@ static void write_map(struct tool *tool, struct side *a, const char *name, doubl
     tool_write(tool, stream);
 }
 
-/* Whether a value is within its tolerance, which NaN is not; else note it. */
-static bool is_within(const struct tool *tool, const char *name, double value, double tolerance)
+/* Whether a value is within the tolerance of an option, which NaN is not; else note it. */
+static bool is_within(const struct tool *tool, const char *name, double value, const char *option)
 {
+    double tolerance = tolerance_of(tool, option);
     bool within = value <= tolerance;
     if (!within && isfinite(tolerance)) {
         tool_note(tool, "%s %.9g is beyond %.9g", name, value, tolerance);
@@ -257,18 +254,18 @@ static bool is_within(const struct tool *tool, const char *name, double value, d
     return within;
 }
 
-int comparison_end(struct tool *tool, const struct comparison_request *request, struct side *a,
-                   struct side *b, struct findings *findings, const char *name)
+int comparison_end(struct tool *tool, struct side *a, struct side *b, struct findings *findings,
+                   const char *name)
 {
-    if (request->region == NULL) {
+    if (!tool_given(tool, "region")) {
         TOOL_TRY(tool, print_regions(findings, &error));
     }
-    bool good = !has_unknown(tool, a, request->field);
-    good = !has_unknown(tool, b, request->field) && good;
-    good = is_within(tool, "avg", findings->statistics.average, request->tol_avg) && good;
-    good = is_within(tool, "max", findings->statistics.largest, request->tol_max) && good;
-    if (request->map != NULL) {
-        write_map(tool, a, name, findings->comparison.difference, request->map);
+    bool good = !has_unknown(tool, a);
+    good = !has_unknown(tool, b) && good;
+    good = is_within(tool, "avg", findings->statistics.average, "tol-avg") && good;
+    good = is_within(tool, "max", findings->statistics.largest, "tol-max") && good;
+    if (tool_given(tool, "map")) {
+        write_map(tool, a, name, findings->comparison.difference, tool_value(tool, "map"));
     }
     findings_free(findings);
     stream_free(&a->stream);

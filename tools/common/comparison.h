@@ -24,35 +24,25 @@ struct findings {
     double reference;                   /* largest norm of B's field */
 };
 
-/* The options of both programs. */
-struct comparison_request {
-    double tol_avg, tol_max; /* a length, or in the field's own unit; infinite: any */
-    const char *field;
-    const char *region; /* NULL: all */
-    const char *map;    /* the file; NULL: none */
-    bool skip_outside, percentiles;
-};
-
-/* Parse these options; exits for invalid values. */
-struct comparison_request comparison_parse(const struct tool *tool);
+/* Check the options of both programs; exits for invalid values. Returns the name of the field. */
+const char *comparison_field(const struct tool *tool);
 
 /* Read a stream and its field; exits on failure. */
 void side_read(const struct tool *tool, const char *file, const char *field, struct side *side);
 
 /* Exits if the fields have different dimensions or columns. */
-void sides_check(const struct tool *tool, const struct side *first, const struct side *second,
-                 const char *name);
+void sides_check(const struct tool *tool, const struct side *first, const struct side *second);
 
-/* Compare at the nodes of A, or of the requested region; exits on failure. */
-void findings_make(const struct tool *tool, const struct comparison_request *request, const struct side *a,
-                   const struct side *b, struct findings *findings);
+/* Compare at the nodes of A, or of a region (NULL: all); exits on failure. */
+void findings_make(const struct tool *tool, const char *region, const struct side *a, const struct side *b,
+                   struct findings *findings);
 void findings_free(struct findings *findings);
 
 /* Print "name TAB value", or "name.part TAB value". */
 void print_quantity(const char *name, const char *part, double value);
 
 /* Print the statistics of all nodes, their number, and the place of the largest difference. */
-void print_findings(const struct findings *findings, const struct cells *cells, bool percentiles);
+void print_findings(const struct tool *tool, const struct findings *findings, const struct cells *cells);
 
 /* Print the statistics relative to the reference. */
 void print_relative(const struct findings *findings);
@@ -63,5 +53,5 @@ double iteration_error(const struct side *side);
 /* End the program: print the statistics of each region unless one was requested, write the requested map with
  * section `name`, and free everything. Returns the exit status: a verdict, with a note, if a value is not a
  * number or beyond its tolerance. */
-int comparison_end(struct tool *tool, const struct comparison_request *request, struct side *a,
-                   struct side *b, struct findings *findings, const char *name);
+int comparison_end(struct tool *tool, struct side *a, struct side *b, struct findings *findings,
+                   const char *name);

@@ -339,24 +339,25 @@ static void read_layers(const struct tool *tool, char *const *files, struct imag
     }
 }
 
-void label_image_read(const struct tool *tool, char *const *files, const struct label_image_options *options,
-                      struct label_image *image)
+void label_image_read(const struct tool *tool, struct label_image *image)
 {
     FREED_BY(image_free) struct image source = {0};
+    const char *table = tool_value(tool, "labels"), *slice = tool_value(tool, "slice");
+    double unit = tool_length_unit(tool, "unit", 0);
     *image = (struct label_image){0};
-    if (options->table != NULL) {
-        TOOL_TRY(tool, label_table_read(options->table, &image->table, &error));
+    if (table != NULL) {
+        TOOL_TRY(tool, label_table_read(table, &image->table, &error));
     }
-    read_layers(tool, files, &source);
-    for (int i = 0; i < 12 && options->unit > 0; i++) {
-        source.to_world[i / 4][i % 4] *= options->unit / source.unit;
+    read_layers(tool, tool->operands, &source);
+    for (int i = 0; i < 12 && unit > 0; i++) {
+        source.to_world[i / 4][i % 4] *= unit / source.unit;
     }
-    if (options->slice != NULL) {
-        choose_slice(tool, &source, options->slice);
+    if (slice != NULL) {
+        choose_slice(tool, &source, slice);
     }
     set_space(tool, &source, image);
-    set_labels(tool, &source, image, options->table);
-    check_size(tool, image, options->unit > 0);
+    set_labels(tool, &source, image, table);
+    check_size(tool, image, unit > 0);
     note_border(tool, image);
 }
 

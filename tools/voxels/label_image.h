@@ -10,12 +10,6 @@
 #include "io/image/label_table.h"
 #include "io/mesh/msh.h"
 
-struct label_image_options {
-    const char *table; /* file of the table of names; NULL: each value is the region label_VALUE */
-    double unit;       /* of the file's lengths, m; 0: as the file says */
-    const char *slice; /* "z=12mm": the slice nearest to that place; NULL: all, or the only slice */
-};
-
 struct label_image {
     struct labels labels;
     uint16_t *voxel;          /* the array of labels.label */
@@ -26,13 +20,13 @@ struct label_image {
     double voxel_volume;
 };
 
-/* Read label images, files[] with NULL behind the last one; "-" and none: standard input. Those behind the
- * first one lie on top where they are not 0. "3=FILE": voxels of FILE that are not 0 have the label 3. Exits
- * on failure: another grid than that of the first; errors of image_read_from and label_table_read, values
- * that are not integers, several values at a voxel, a label that is not in the table, a name without a voxel,
- * a slice that is not perpendicular to a world axis, and a body of impossible size. */
-void label_image_read(const struct tool *tool, char *const *files, const struct label_image_options *options,
-                      struct label_image *image);
+/* Read label images, the operands; "-" and none: standard input. The options --labels, --unit and --slice
+ * tell the table of their names, the unit of their lengths, and the slice to take. Those behind the first one
+ * lie on top where they are not 0. "3=FILE": voxels of FILE that are not 0 have the label 3. Exits on
+ * failure: another grid than that of the first; errors of image_read_from and label_table_read, values that
+ * are not integers, several values at a voxel, a label that is not in the table, a name without a voxel, a
+ * slice that is not perpendicular to a world axis, and a body of impossible size. */
+void label_image_read(const struct tool *tool, struct label_image *image);
 void label_image_free(struct label_image *image);
 
 /* The value of --fine, "3mm" or "3mm:ventricles,tumour", which must be less than `spacing`, m: *finest, m.
@@ -54,11 +48,9 @@ void label_sizes_read(const struct tool *tool, const struct label_image *image, 
 
 /* The mesh that goes into a stream. Regions are the labels with cells. Facets are the boundary, oriented
  * outward, in groups A|B with the label A within and B beyond. Node sets are the
- * interfaces A|B between two regions, A the lower label. The mesh borrows the nodes and cells of *result:
- * release it by label_mesh_free. */
-MUST_CHECK enum status label_mesh_make(const struct label_image *image, const struct label_cells *result,
+ * interfaces A|B between two regions, A the lower label. The mesh takes the nodes and cells of *result. */
+MUST_CHECK enum status label_mesh_make(const struct label_image *image, struct label_cells *result,
                                        struct mesh *mesh, struct error *error);
-void label_mesh_free(struct mesh *mesh);
 
 /* The surface of labels as a table for the rigid bodies of scenes: the facets, and their move outward. */
 struct label_surface_options {
@@ -66,8 +58,8 @@ struct label_surface_options {
     double gap;           /* distance by which facets are moved outward, m */
 };
 
-/* Read "A" or "A|B", B a label or outside. Exits for other names. */
-void label_surface_parse(const struct tool *tool, const struct label_image *image, const char *text,
+/* Read the options --surface "A" or "A|B", B a label or outside, and --gap. Exits for other names. */
+void label_surface_parse(const struct tool *tool, const struct label_image *image,
                          struct label_surface_options *options);
 
 /* Write the facets to tool->output or standard output, m. 3D: the corners of a triangle in each row, with the

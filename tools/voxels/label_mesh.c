@@ -118,22 +118,15 @@ static enum status make_sets(const struct label_image *image, const struct label
     return STATUS_OK;
 }
 
-enum status label_mesh_make(const struct label_image *image, const struct label_cells *result,
-                            struct mesh *mesh, struct error *error)
+enum status label_mesh_make(const struct label_image *image, struct label_cells *result, struct mesh *mesh,
+                            struct error *error)
 {
-    *mesh = (struct mesh){.dim = result->dim,
-                          .node_count = result->node_count,
-                          .x = result->x,
-                          .cell_count = result->cell_count,
-                          .cells = result->cell};
+    *mesh =
+        (struct mesh){.dim = result->dim, .node_count = result->node_count, .cell_count = result->cell_count};
     RETURN_IF_ERROR(make_regions(image, result, mesh, error));
     RETURN_IF_ERROR(make_facets(image, result, mesh, error));
-    return make_sets(image, result, mesh, error);
-}
-
-void label_mesh_free(struct mesh *mesh)
-{
-    mesh->x = NULL; /* borrowed, as are the cells */
-    mesh->cells = NULL;
-    mesh_free(mesh);
+    RETURN_IF_ERROR(make_sets(image, result, mesh, error));
+    mesh->x = array_take(&result->x);
+    mesh->cells = array_take(&result->cell);
+    return STATUS_OK;
 }

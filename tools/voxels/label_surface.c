@@ -11,13 +11,14 @@
 
 enum { MOST_HALVINGS = 30 };
 
-void label_surface_parse(const struct tool *tool, const struct label_image *image, const char *text,
+void label_surface_parse(const struct tool *tool, const struct label_image *image,
                          struct label_surface_options *options)
 {
-    SCRATCH char *copy = tool_memory(tool, strdup(text));
+    SCRATCH char *copy = tool_memory(tool, strdup(tool_value(tool, "surface")));
     char *outer = copy;
     const char *inner = strsep(&outer, "|");
     const struct names *names = &image->table.names;
+    options->gap = tool_length(tool, "gap", 0);
     options->inner = (int32_t)names_find(names, inner);
     options->outer = outer == NULL ? -1 : (int32_t)names_find(names, outer);
     if (options->inner <= 0 || (outer != NULL && options->outer < 0)) {
