@@ -49,16 +49,17 @@ setup() {
     done
 }
 
-# Options are asked for by name in the program's own file, or where several programs share them: of supports and shape functions, of
+# Options are asked for by name in the program's own files, or where several programs share them: of supports and shape functions, of
 # comparisons, of images. -o and -t are looked at where a stream is written.
 @test "every option that a usage text declares is one that the program reads" {
     for tool in "${tools[@]}"; do
         shared=()
+        [ ! -d "$top/tools/$tool" ] || shared+=("$top/tools/$tool"/*.c)
         grep -qE 'radius_parse|mls_parse' "$top/tools/$tool.c" && shared+=("$top/tools/common/stage_options.c")
-        grep -q comparison_parse "$top/tools/$tool.c" && shared+=("$top/tools/common/comparison.c")
+        grep -q comparison_field "$top/tools/$tool.c" && shared+=("$top/tools/common/comparison.c")
         grep -q tool_image_method "$top/tools/$tool.c" && shared+=("$top/tools/common/images/images.c")
         for name in $("$tool" -h | sed -n '/^Options:/,/^$/s/^\(  -.,\|     \) --\([a-z-]*\).*/\2/p'); do
-            [ "$name" = output ] || { [ "$name" = text ] && grep -qE 'tool_(write|copy)[(]|tool->text|comparison_parse' "$top/tools/$tool.c"; } ||
+            [ "$name" = output ] || { [ "$name" = text ] && grep -qE 'tool_(write|copy)[(]|tool->text|comparison_field' "$top/tools/$tool.c"; } ||
                 sed '/^static const char usage/,/;$/d' "$top/tools/$tool.c" "${shared[@]}" | has "\"$name\"" ||
                 { echo "$tool: --$name"; false; }
         done

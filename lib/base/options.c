@@ -96,69 +96,54 @@ const char *option_text(const struct option *option, char text[32])
     return text;
 }
 
-static enum status mark_given(struct option *option, const char *shown, struct error *error)
+/* Note the use of an option, with this value or (NULL) the next argument if it takes one. */
+static enum status use(struct options *options, struct option *option, const char *shown, const char *value,
+                       int argc, char *argv[], int *at, struct error *error)
 {
     if (option->given && !option->repeats) {
         return fail(error, STATUS_INPUT, "option %s given twice", shown);
     }
     option->given = true;
-    return STATUS_OK;
-}
-
-static enum status take_value(struct options *options, struct option *option, const char *value,
-                              struct error *error)
-{
+    if (!option->takes_value) {
+        return value == NULL ? STATUS_OK : fail(error, STATUS_INPUT, "option %s takes no value", shown);
+    }
+    if (value == NULL && *at + 1 >= argc) {
+        return fail(error, STATUS_INPUT, "option %s lacks its value", shown);
+    }
     if (options->use_count == OPTIONS_MOST_USES) {
         return fail(error, STATUS_INPUT, "more than %d options --%s and the like: run it twice",
                     OPTIONS_MOST_USES, option->name);
     }
-    option->value = value;
-    options->use[options->use_count++] = (struct option_use){option, value};
+    option->value = value != NULL ? value : argv[++*at];
+    options->use[options->use_count++] = (struct option_use){option, option->value};
     return STATUS_OK;
 }
 
 /* --name, --name=VALUE or --name VALUE at argv[*at]. */
 static enum status parse_long(struct options *options, int argc, char *argv[], int *at, struct error *error)
 {
-    const char *shown = argv[*at];
-    const char *name = shown + 2;
-    const char *equals = strchr(name, '=');
-    size_t length = equals != NULL ? (size_t)(equals - name) : strlen(name);
-    int index = find_name(options, name, length);
-    if (index < 0) {
-        return fail(error, STATUS_INPUT, "unknown option %s (see -h)", shown);
-    }
-    struct option *option = &options->option[index];
-    RETURN_IF_ERROR(mark_given(option, shown, error));
-    if (!option->takes_value) {
-        return equals == NULL ? STATUS_OK : fail(error, STATUS_INPUT, "option %s takes no value", shown);
-    }
-    if (equals != NULL) {
-        return take_value(options, option, equals + 1, error);
-    }
-    if (*at + 1 >= argc) {
-        return fail(error, STATUS_INPUT, "option %s lacks its value", shown);
-    }
-    return take_value(options, option, argv[++*at], error);
+    const char *shown = argv[*at], *name = shown + 2, *equals = strchr(name, '=');
+    int index = find_name(options, name, strcspn(name, "="));
+    return index < 0 ? fail(error, STATUS_INPUT, "unknown option %s (see -h)", shown)
+                     : use(options, &options->option[index], shown, equals != NULL ? equals + 1 : NULL, argc,
+                           argv, at, error);
 }
 
 /* -abc (flags joined), -kVALUE or -k VALUE at argv[*at]. */
 static enum status parse_short(struct options *options, int argc, char *argv[], int *at, struct error *error)
 {
-    for (const char *letter = argv[*at] + 1; *letter != '\0'; letter++) {
+    const char *joined = argv[*at];
+    for (const char *letter = joined + 1; *letter != '\0'; letter++) {
         char shown[3] = {'-', *letter, '\0'};
         struct option *option = find_letter(options, *letter);
         if (option == NULL) {
-            return fail(error, STATUS_INPUT, "unknown option %s in %s (see -h)", shown, argv[*at]);
+            return fail(error, STATUS_INPUT, "unknown option %s in %s (see -h)", shown, joined);
         }
-        RETURN_IF_ERROR(mark_given(option, shown, error));
-        if (!option->takes_value) {
-            continue;
+        bool behind = option->takes_value && letter[1] != '\0';
+        RETURN_IF_ERROR(use(options, option, shown, behind ? letter + 1 : NULL, argc, argv, at, error));
+        if (option->takes_value) {
+            break;
         }
-        if (letter[1] == '\0' && *at + 1 >= argc) {
-            return fail(error, STATUS_INPUT, "option %s lacks its value", shown);
-        }
-        return take_value(options, option, letter[1] != '\0' ? letter + 1 : argv[++*at], error);
     }
     return STATUS_OK;
 }

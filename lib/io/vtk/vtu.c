@@ -139,13 +139,23 @@ static void end_array(struct writer *writer)
     fputs(writer->text ? "</DataArray>\n" : "\n</DataArray>\n", writer->file);
 }
 
-static void put_integer(struct writer *writer, int64_t value, size_t size)
+/* Write an array of whole numbers, which is 1 in `extent`: value[count], or (NULL) first, first + step, ...
+ */
+static void put_numbers(struct writer *writer, const char *type, const char *name, const char *extent,
+                        int64_t count, const int32_t *value, int64_t first, int64_t step)
 {
-    if (writer->text) {
-        fprintf(writer->file, "%" PRId64 "\n", value);
-    } else {
-        put_bytes(writer, &value, size);
+    size_t size = strcmp(type, "UInt8") == 0 ? 1 : 8;
+    begin_array(writer, type, name, extent, 1);
+    begin_data(writer, count, size);
+    for (int64_t i = 0; i < count; i++) {
+        int64_t number = value != NULL ? value[i] : first + i * step;
+        if (writer->text) {
+            fprintf(writer->file, "%" PRId64 "\n", number);
+        } else {
+            put_bytes(writer, &number, size);
+        }
     }
+    end_array(writer);
 }
 
 /* The columns written for a section: `count` columns, each a column of the section, or -1: zeros. */
@@ -225,10 +235,7 @@ static void put_regions(struct writer *writer, const struct names *regions)
     fputs(regions->count == 0 ? "" : "<FieldData>\n", writer->file);
     for (int64_t i = 0; i < regions->count; i++) {
         snprintf(label, sizeof label, "region.%s", regions->name[i]);
-        begin_array(writer, "Int64", label, "NumberOfTuples", 1);
-        begin_data(writer, 1, 8);
-        put_integer(writer, i, 8);
-        end_array(writer);
+        put_numbers(writer, "Int64", label, "NumberOfTuples", 1, NULL, i, 0);
     }
     fputs(regions->count == 0 ? "" : "</FieldData>\n", writer->file);
 }
@@ -238,25 +245,11 @@ static void put_cells(struct writer *writer, const struct vtk_mesh *mesh)
     int corners = mesh->node != NULL ? mesh->dim + 1 : 1;
     int64_t count = mesh->node != NULL ? mesh->cell_count : mesh->node_count;
     int type = mesh->node == NULL ? VTK_VERTEX : mesh->dim == 2 ? VTK_TRIANGLE : VTK_TETRA;
+    static const char one[] = "NumberOfComponents";
     fputs("<Cells>\n", writer->file);
-    begin_array(writer, "Int64", "connectivity", "NumberOfComponents", 1);
-    begin_data(writer, count * corners, 8);
-    for (int64_t i = 0; i < count * corners; i++) {
-        put_integer(writer, mesh->node != NULL ? mesh->node[i] : i, 8);
-    }
-    end_array(writer);
-    begin_array(writer, "Int64", "offsets", "NumberOfComponents", 1);
-    begin_data(writer, count, 8);
-    for (int64_t c = 1; c <= count; c++) {
-        put_integer(writer, c * corners, 8);
-    }
-    end_array(writer);
-    begin_array(writer, "UInt8", "types", "NumberOfComponents", 1);
-    begin_data(writer, count, 1);
-    for (int64_t c = 0; c < count; c++) {
-        put_integer(writer, type, 1);
-    }
-    end_array(writer);
+    put_numbers(writer, "Int64", "connectivity", one, count * corners, mesh->node, 0, 1);
+    put_numbers(writer, "Int64", "offsets", one, count, NULL, corners, corners);
+    put_numbers(writer, "UInt8", "types", one, count, NULL, type, 0);
     fputs("</Cells>\n", writer->file);
 }
 
