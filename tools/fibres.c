@@ -36,7 +36,6 @@ static const char usage[] =
 #include "solid/rigid/wall.h"
 #include "stages/views.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 /* One side of the wall. */

@@ -55,7 +55,6 @@ static const char usage[] =
 #include "io/files/textfile.h"
 #include "io/files/landmarks.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 /* Points with their neighbours and shape functions. */

@@ -47,7 +47,6 @@ static const char usage[] =
 #include <fnmatch.h>
 #include <inttypes.h>
 #include <string.h>
-#include <unistd.h>
 
 /* A command, with the number of its operands and its options. */
 struct command {

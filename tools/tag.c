@@ -59,7 +59,6 @@ static const char usage[] =
     "  tag -u mm -f 'probe=ball:10,0,42,5 and normal:0,0,1,60' -f 'free=all without probe' < body.mts\n"
     "  tag -f 'cavity=side:2,180' -r 'tumour=ball:0.01,0,0.03,0.008' -n 'tip=plane:0,0,0.1,0,0,1'\n";
 
-#include "cell_report.h"
 #include "groups/group_body.h"
 #include "tool.h"
 
@@ -69,7 +68,6 @@ static const char usage[] =
 #include "base/vector.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* ---- the options ---- */

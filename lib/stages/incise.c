@@ -1,7 +1,6 @@
 #include "stages/incise_private.h"
 
 #include "approx/cells/parts.h"
-#include "approx/cells/quality.h"
 #include "base/box.h"
 #include "base/memory.h"
 #include "base/vector.h"

@@ -10,7 +10,6 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Names of the sections of groups begin so; "label=facets.NAME" or "label=set.NAME" are their attributes. */

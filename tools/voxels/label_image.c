@@ -7,7 +7,6 @@
 #include "images/images.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Most labels of an image without a table. */

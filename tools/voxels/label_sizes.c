@@ -2,7 +2,6 @@
 
 #include "stages/views.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 bool *label_fine_parse(const struct tool *tool, const struct label_image *image, const char *text,

@@ -5,7 +5,6 @@
 
 #include <stdint.h>
 #include <stdio.h>
-#include <zlib.h>
 
 enum { NIFTI1_HEADER = 348, NIFTI2_HEADER = 540 };
 

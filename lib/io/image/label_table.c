@@ -5,7 +5,6 @@
 #include "io/files/textfile.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 static const size_t size_limit = (size_t)1 << 24;

@@ -4,7 +4,6 @@
 #include "base/status.h"
 #include "io/mesh/msh.h"
 
-#include <stdbool.h>
 #include <stdint.h>
 
 struct mesh_draft {

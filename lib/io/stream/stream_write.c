@@ -6,7 +6,6 @@
 #include <errno.h>
 #include <inttypes.h>
 #include <locale.h>
-#include <stdlib.h>
 #include <string.h>
 #include <zlib.h>
 
