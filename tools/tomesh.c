@@ -30,28 +30,13 @@ static const char usage[] =
 
 #include <inttypes.h>
 
-/* What is written of a stream, with what must be freed. */
+/* What is written of a stream. */
 struct body {
     struct cells cells;
     struct groups regions;
     struct groups facets;
     struct groups sets;
 };
-
-static void body_free(struct body *body)
-{
-    groups_free(&body->regions);
-    groups_free(&body->facets);
-    groups_free(&body->sets);
-}
-
-static enum status find_body(const struct stream *stream, struct body *body, struct error *error)
-{
-    RETURN_IF_ERROR(stream_cells(stream, true, &body->cells, error));
-    RETURN_IF_ERROR(stream_regions(stream, true, &body->regions, error));
-    RETURN_IF_ERROR(stream_facets(stream, false, &body->cells, &body->facets, error));
-    return stream_sets(stream, false, body->cells.node_count, &body->sets, error);
-}
 
 /* The formats: Gmsh reference manual, "MSH file format"; Abaqus keywords, as the CalculiX manual has them. */
 
@@ -255,10 +240,9 @@ static enum status write_inp(FILE *file, const struct body *body, double unit, s
 int main(int argc, char *argv[])
 {
     struct tool tool;
-    struct error error;
     struct output output;
     FREED_BY(stream_free) struct stream stream = {0};
-    FREED_BY(body_free) struct body body = {0};
+    struct body body;
     tool_begin(&tool, usage, 0, 1, argc, argv);
     bool is_msh = tool.output != NULL && text_ends(tool.output, ".msh");
     if (!is_msh && (tool.output == NULL || !text_ends(tool.output, ".inp"))) {
@@ -266,10 +250,17 @@ int main(int argc, char *argv[])
     }
     double unit = tool_length_unit(&tool, "unit", 1.0);
     tool_read(&tool, tool.operands[0], &stream);
-    tool_check(&tool, find_body(&stream, &body, &error), &error);
+    TOOL_TRY(&tool, stream_cells(&stream, true, &body.cells, &error));
+    TOOL_TRY(&tool, stream_regions(&stream, true, &body.regions, &error));
+    TOOL_TRY(&tool, stream_facets(&stream, false, &body.cells, &body.facets, &error));
+    TOOL_TRY(&tool, stream_sets(&stream, false, body.cells.node_count, &body.sets, &error));
     tool_print_to(&tool, &output, tool.output);
-    enum status status =
-        is_msh ? write_msh(output.file, &body, unit, &error) : write_inp(output.file, &body, unit, &error);
-    tool_check(&tool, output_end(&output, status, &error), &error);
+    TOOL_TRY(&tool, output_end(&output,
+                               is_msh ? write_msh(output.file, &body, unit, &error)
+                                      : write_inp(output.file, &body, unit, &error),
+                               &error));
+    groups_free(&body.regions);
+    groups_free(&body.facets);
+    groups_free(&body.sets);
     return tool_end(&tool);
 }

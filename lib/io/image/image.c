@@ -1,9 +1,11 @@
 #include "io/image/image_private.h"
 
 #include "base/memory.h"
+#include "base/vector.h"
 
 #include <float.h>
 #include <math.h>
+#include <stdarg.h>
 #include <string.h>
 
 const struct nifti_type image_types[IMAGE_TYPES] = {
@@ -149,4 +151,44 @@ void image_free(struct image *image)
 size_t image_voxels(const struct image *image)
 {
     return image->size[0] * image->size[1] * image->size[2];
+}
+
+/* ---- places of voxels ---- */
+
+void image_map(const double *m, const double x[3], double place[3])
+{
+    for (int r = 0; r < 3; r++, m += 4) {
+        place[r] = m[0] * x[0] + m[1] * x[1] + m[2] * x[2] + m[3];
+    }
+}
+
+double image_step(const struct image *image, int axis)
+{
+    return hypot(hypot(image->to_world[0][axis], image->to_world[1][axis]), image->to_world[2][axis]);
+}
+
+void image_world(const struct image *image, const double voxel[3], double world[3])
+{
+    image_map(&image->to_world[0][0], voxel, world);
+}
+
+void image_to_voxel(const struct image *image, double inverse[3][4])
+{
+    const double(*m)[4] = image->to_world;
+    double linear[3][3];
+    (void)matrix_inverse(m[0], m[1], m[2], linear);
+    for (int r = 0; r < 3; r++) {
+        memcpy(inverse[r], linear[r], sizeof linear[r]);
+        inverse[r][3] = -(inverse[r][0] * m[0][3] + inverse[r][1] * m[1][3] + inverse[r][2] * m[2][3]);
+    }
+}
+
+void image_note(struct image *image, const char *format, ...)
+{
+    text_append(image->note, sizeof image->note, "%s", image->note[0] != '\0' ? "; " : "");
+    size_t length = strlen(image->note);
+    va_list values;
+    va_start(values, format);
+    vsnprintf(image->note + length, sizeof image->note - length, format, values);
+    va_end(values);
 }

@@ -107,10 +107,6 @@ void image_note(struct image *image, const char *format, ...) __attribute__((for
 /* Set image->description: its beginning, '?' for what is not printable. */
 void image_describe(struct image *image, const char *text);
 
-/* The quaternion (b, c, d), voxel sizes and qfac of the first three columns of a matrix; false if these are
- * not orthogonal. */
-bool nifti_quaternion(double matrix[3][4], double quatern[3], double pixdim[4]);
-
 /* Read a file out of gzip; of what is no image, unless `any` is wanted, only the beginning. */
 MUST_CHECK enum status image_bytes_read(int descriptor, bool any, struct image_bytes *file,
                                         struct error *error);

@@ -38,14 +38,12 @@ static void next_line(struct inp *p)
 {
     struct msh_reader *r = p->r;
     do {
-        p->line = NULL;
-        if (r->status != STATUS_OK || r->at == r->end) {
+        const char *end;
+        if (!msh_next_line(r, &p->line, &end)) {
+            p->line = NULL;
             return;
         }
-        const char *end = memchr(r->at, '\n', (size_t)(r->end - r->at));
-        p->line = r->at;
-        p->length = (end != NULL ? end : r->end) - r->at;
-        r->at = end != NULL ? end + 1 : r->end;
+        p->length = end - p->line;
         r->record = ++p->number;
         trim(&p->line, &p->length);
     } while (p->length == 0 || (p->length > 1 && memcmp(p->line, "**", 2) == 0));

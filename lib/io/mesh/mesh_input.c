@@ -277,3 +277,15 @@ void input_leave_out(struct msh_reader *r, const char *what)
         text_append(r->left_out, sizeof r->left_out, "%s", item);
     }
 }
+
+bool msh_next_line(struct msh_reader *r, const char **at, const char **end)
+{
+    if (r->status != STATUS_OK || r->at == r->end) {
+        return false;
+    }
+    const char *newline = memchr(r->at, '\n', (size_t)(r->end - r->at));
+    *at = r->at;
+    *end = newline != NULL ? newline : r->end;
+    r->at = newline != NULL ? newline + 1 : r->end;
+    return true;
+}

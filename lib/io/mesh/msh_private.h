@@ -208,6 +208,9 @@ static inline bool input_is_blank(char c)
  * end. */
 const char *input_word(const char **at, const char *end, char comma, int64_t *length);
 
+/* The next line, *at to before *end; false at the end of the file. */
+bool msh_next_line(struct msh_reader *r, const char **at, const char **end);
+
 /* The number of a name of 1 to INPUT_NAME bytes among those of a kind, for the caller: 0 at first. */
 int64_t *input_name(struct msh_reader *r, int kind, const char *text, size_t length);
 

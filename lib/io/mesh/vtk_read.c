@@ -14,19 +14,6 @@ struct legacy {
     char keyword[64];
 };
 
-/* The next line; false at the end. The rest of it is then between *at and *end. */
-static bool next_line(struct msh_reader *r, const char **at, const char **end)
-{
-    if (r->status != STATUS_OK || r->at == r->end) {
-        return false;
-    }
-    const char *newline = memchr(r->at, '\n', (size_t)(r->end - r->at));
-    *at = r->at;
-    *end = newline != NULL ? newline : r->end;
-    r->at = newline != NULL ? newline + 1 : r->end;
-    return true;
-}
-
 /* The next word of a line, copied; empty if there is none. */
 static void copy_word(struct msh_reader *r, const char **at, const char *end, char text[], size_t size)
 {
@@ -43,7 +30,7 @@ static void copy_word(struct msh_reader *r, const char **at, const char *end, ch
 static void first_word(struct msh_reader *r, const char **at, const char **end, char text[], size_t size)
 {
     text[0] = '\0';
-    while (text[0] == '\0' && next_line(r, at, end)) {
+    while (text[0] == '\0' && msh_next_line(r, at, end)) {
         copy_word(r, at, *end, text, size);
     }
 }
@@ -71,7 +58,7 @@ static void skip_metadata(struct msh_reader *r)
 {
     const char *at, *end;
     int64_t length;
-    while (next_line(r, &at, &end) && input_word(&at, end, ',', &length) != NULL) {
+    while (msh_next_line(r, &at, &end) && input_word(&at, end, ',', &length) != NULL) {
     }
 }
 
@@ -107,7 +94,7 @@ static void skip_texts(struct legacy *l, int64_t count)
             size = size << 8 | (unsigned char)r->at[k];
         }
         if (l->binary ? width == 0 || r->end - r->at < width || size > (uint64_t)(r->end - r->at - width)
-                      : !next_line(r, &at, &end)) {
+                      : !msh_next_line(r, &at, &end)) {
             msh_fail(r, "only %lld of %lld texts", (long long)i, (long long)count);
         } else if (l->binary) {
             r->at += width + (int64_t)size;
@@ -255,7 +242,7 @@ static void read_field(struct legacy *l, const char *at, const char *end)
     copy_word(r, &at, end, name, sizeof name);
     int64_t count = next_count(r, &at, end, 0);
     int64_t i = 0;
-    while (i < count && next_line(r, &at, &end)) {
+    while (i < count && msh_next_line(r, &at, &end)) {
         copy_word(r, &at, end, name, sizeof name);
         if (strcasecmp(name, "METADATA") == 0) {
             skip_metadata(r);
@@ -296,7 +283,7 @@ static bool read_attribute(struct legacy *l, const char *at, const char *end)
         }
         components = components > 0 ? components : at < end ? next_count(r, &at, end, 1) : 1;
         const char *table = r->at; /* the line LOOKUP_TABLE, which may be left out */
-        if (attributes[i].components == 0 && next_line(r, &at, &end)) {
+        if (attributes[i].components == 0 && msh_next_line(r, &at, &end)) {
             copy_word(r, &at, end, l->keyword, sizeof l->keyword);
             r->at = strcasecmp(l->keyword, "LOOKUP_TABLE") == 0 ? r->at : table;
         }
@@ -348,8 +335,8 @@ static void read_head(struct legacy *l)
     struct msh_reader *r = l->v.r;
     const char *at = "", *end = at;
     char word[64];
-    (void)next_line(r, &at, &end);
-    (void)next_line(r, &at, &end);
+    (void)msh_next_line(r, &at, &end);
+    (void)msh_next_line(r, &at, &end);
     first_word(r, &at, &end, word, sizeof word);
     l->binary = strcasecmp(word, "BINARY") == 0;
     if (!l->binary && strcasecmp(word, "ASCII") != 0) {

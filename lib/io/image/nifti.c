@@ -1,0 +1,330 @@
+/* The headers of NIfTI. */
+#include "io/image/image_private.h"
+
+#include "base/vector.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <string.h>
+
+/* ---- the map from voxels to world coordinates: sform, qform, voxel sizes ---- */
+
+static double column_length(double m[3][4], int c)
+{
+    return sqrt(m[0][c] * m[0][c] + m[1][c] * m[1][c] + m[2][c] * m[2][c]);
+}
+
+/* NIfTI-1 standard, "quaternion representation of rotation matrix"; lengths and signs in pixdim. */
+static void from_qform(const struct nifti *header, double m[3][4])
+{
+    double b = header->quatern[0], c = header->quatern[1], d = header->quatern[2];
+    double rest = 1 - b * b - c * c - d * d, a = sqrt(fmax(rest, 0));
+    if (rest < 1e-7) { /* half a turn; b, c, d are rounded */
+        double length = sqrt(b * b + c * c + d * d);
+        a = 0, b /= length, c /= length, d /= length;
+    }
+    const double rotation[3][3] = {{a * a + b * b - c * c - d * d, 2 * (b * c - a * d), 2 * (b * d + a * c)},
+                                   {2 * (b * c + a * d), a * a + c * c - b * b - d * d, 2 * (c * d - a * b)},
+                                   {2 * (b * d - a * c), 2 * (c * d + a * b), a * a + d * d - b * b - c * c}};
+    double side = header->pixdim[0] < 0 ? -1 : 1;
+    for (int r = 0; r < 3; r++) {
+        m[r][0] = rotation[r][0] * fabs(header->pixdim[1]);
+        m[r][1] = rotation[r][1] * fabs(header->pixdim[2]);
+        m[r][2] = rotation[r][2] * fabs(header->pixdim[3]) * side;
+        m[r][3] = header->qoffset[r];
+    }
+}
+
+/* The quaternion (b, c, d), voxel sizes and qfac of the first three columns of a matrix; false if these are
+ * not orthogonal. */
+static bool quaternion_of(double matrix[3][4], double quatern[3], double pixdim[4])
+{
+    double r[3][3];
+    for (int c = 0; c < 3; c++) {
+        pixdim[1 + c] = column_length(matrix, c);
+    }
+    pixdim[0] = determinant3(matrix[0], matrix[1], matrix[2]) < 0 ? -1 : 1;
+    for (int c = 0; c < 3; c++) {
+        for (int i = 0; i < 3; i++) {
+            r[i][c] = matrix[i][c] / pixdim[1 + c] * (c == 2 ? pixdim[0] : 1);
+        }
+    }
+    for (int c = 0; c < 3; c++) {
+        int e = (c + 1) % 3;
+        if (fabs(r[0][c] * r[0][e] + r[1][c] * r[1][e] + r[2][c] * r[2][e]) > 1e-5) {
+            return false;
+        }
+    }
+    /* (1 + trace) / 4 is a^2; with two signs changed it is b^2, c^2 or d^2. Divide by the largest of these.
+     */
+    double square[4] = {1 + r[0][0] + r[1][1] + r[2][2], 1 + r[0][0] - r[1][1] - r[2][2],
+                        1 - r[0][0] + r[1][1] - r[2][2], 1 - r[0][0] - r[1][1] + r[2][2]};
+    double product[4][4] = {{square[0], r[2][1] - r[1][2], r[0][2] - r[2][0], r[1][0] - r[0][1]},
+                            {r[2][1] - r[1][2], square[1], r[0][1] + r[1][0], r[0][2] + r[2][0]},
+                            {r[0][2] - r[2][0], r[0][1] + r[1][0], square[2], r[1][2] + r[2][1]},
+                            {r[1][0] - r[0][1], r[0][2] + r[2][0], r[1][2] + r[2][1], square[3]}};
+    int largest = 0;
+    for (int i = 1; i < 4; i++) {
+        largest = square[i] > square[largest] ? i : largest;
+    }
+    double scale = (product[largest][0] < 0 ? -0.5 : 0.5) / sqrt(square[largest]); /* a >= 0 */
+    for (int i = 0; i < 3; i++) {
+        quatern[i] = scale * product[largest][1 + i];
+    }
+    return true;
+}
+
+/* The step across an image of one slice has no meaning: make it as long as the first one if it is zero. */
+static void complete_slice(double m[3][4])
+{
+    if (column_length(m, 2) > 0) {
+        return;
+    }
+    double across[3], length = 0;
+    for (int i = 0; i < 3; i++) {
+        int next = (i + 1) % 3, last = (i + 2) % 3;
+        across[i] = m[next][0] * m[last][1] - m[next][1] * m[last][0];
+        length += across[i] * across[i];
+    }
+    for (int i = 0; i < 3 && length > 0; i++) {
+        m[i][2] = across[i] / sqrt(length) * column_length(m, 0);
+    }
+}
+
+static bool is_sound(double m[3][4])
+{
+    double volume = column_length(m, 0) * column_length(m, 1) * column_length(m, 2);
+    for (int r = 0; r < 3; r++) {
+        if (!isfinite(m[r][3])) {
+            return false;
+        }
+    }
+    return isfinite(volume) && volume > 0 && fabs(determinant3(m[0], m[1], m[2])) > 1e-6 * volume;
+}
+
+/* Largest distance between the positions of the image's corners under two maps. */
+static double disagreement(const struct image *image, double a[3][4], double b[3][4])
+{
+    double most = 0;
+    for (int corner = 0; corner < 8; corner++) {
+        double voxel[3], at_a[3], at_b[3];
+        for (int i = 0; i < 3; i++) {
+            voxel[i] = corner >> i & 1 ? (double)(image->size[i] - 1) : 0;
+        }
+        image_map(&a[0][0], voxel, at_a);
+        image_map(&b[0][0], voxel, at_b);
+        most = fmax(most, hypot(hypot(at_a[0] - at_b[0], at_a[1] - at_b[1]), at_a[2] - at_b[2]));
+    }
+    return most;
+}
+
+enum status image_place(struct image *image, double matrix[3][4], const char *form, struct error *error)
+{
+    if (image->size[2] == 1) {
+        complete_slice(matrix);
+    }
+    if (!is_sound(matrix)) {
+        return fail(error, STATUS_INPUT, "header: %s gives the voxels no place: not finite, or no volume",
+                    form);
+    }
+    memcpy(image->to_world, matrix, sizeof image->to_world);
+    return STATUS_OK;
+}
+
+enum status nifti_space(const struct nifti *header, struct image *image, struct error *error)
+{
+    static const double unit[] = {1e-3, 1, 1e-3, 1e-6};
+    double matrix[3][4] = {{0}}, other[3][4];
+    const char *form = "its voxel sizes (pixdim)";
+    int units = (int)header->units & 7;
+    if (units > 3) {
+        return fail(error, STATUS_INPUT, "header: unknown unit of length %d: metres are 1, mm 2, um 3",
+                    units);
+    }
+    if (units == 0) {
+        image_note(image, "no unit of length: millimetres taken");
+    }
+    image->unit = unit[units];
+    if (header->sform > 0) {
+        form = "its sform";
+        memcpy(matrix, header->srow, sizeof matrix);
+        image->space = (int)header->sform;
+    } else if (header->qform > 0) {
+        form = "its qform";
+        from_qform(header, matrix);
+        image->space = (int)header->qform;
+    } else {
+        for (int i = 0; i < 3; i++) {
+            matrix[i][i] = fabs(header->pixdim[1 + i]);
+        }
+        image_note(image, "has neither sform nor qform: first voxel at the origin, axes taken to be RAS");
+    }
+    if (header->sform > 0 && header->qform > 0) {
+        from_qform(header, other);
+        if (image->size[2] == 1) {
+            complete_slice(other);
+            complete_slice(matrix);
+        }
+        double half = 0.5 * fmin(column_length(matrix, 0), column_length(matrix, 1));
+        if (!(disagreement(image, matrix, other) <= half)) {
+            image_note(image, "sform and qform differ by more than half a voxel: sform taken");
+        }
+    }
+    for (int i = 0; i < 12; i++) {
+        matrix[i / 4][i % 4] *= image->unit;
+    }
+    return image_place(image, matrix, form, error);
+}
+
+/* ---- the layout of the 348 bytes of a header of NIfTI-1 and of the 540 bytes of NIfTI-2 ---- */
+
+/* The types of fields. */
+enum {
+    I1 = IMAGE_UINT8,
+    I2 = IMAGE_INT16,
+    I4 = IMAGE_INT32,
+    I8 = IMAGE_INT64,
+    F4 = IMAGE_FLOAT32,
+    F8 = IMAGE_FLOAT64
+};
+
+/* The members of struct nifti, and their place in each version. */
+#define AT(member) offsetof(struct nifti, member), sizeof((struct nifti *)0)->member / sizeof(double)
+static const struct field {
+    size_t member, count;
+    struct {
+        int offset, type;
+    } at[2];
+} fields[] = {
+    {AT(dim), {{40, I2}, {16, I8}}},       {AT(intent), {{68, I2}, {504, I4}}},
+    {AT(datatype), {{70, I2}, {12, I2}}},  {AT(bits), {{72, I2}, {14, I2}}},
+    {AT(pixdim), {{76, F4}, {104, F8}}},   {AT(offset), {{108, F4}, {168, I8}}},
+    {AT(slope), {{112, F4}, {176, F8}}},   {AT(inter), {{116, F4}, {184, F8}}},
+    {AT(units), {{123, I1}, {500, I4}}},   {AT(qform), {{252, I2}, {344, I4}}},
+    {AT(sform), {{254, I2}, {348, I4}}},   {AT(quatern), {{256, F4}, {352, F8}}},
+    {AT(qoffset), {{268, F4}, {376, F8}}}, {AT(srow), {{280, F4}, {400, F8}}},
+};
+enum { FIELDS = sizeof fields / sizeof *fields };
+
+static const int description_offset[2] = {148, 240}, intent_name_offset[2] = {328, 508},
+                 magic_offset[2] = {344, 4};
+static const char magic1[] = "n+1", magic2[] = "n+2\0\r\n\032\n";
+
+int nifti_version(const unsigned char *bytes, bool *swapped)
+{
+    static const int sizes[2] = {NIFTI1_HEADER, NIFTI2_HEADER};
+    for (int version = 1; version <= 2; version++) {
+        int low = sizes[version - 1] & 255, high = sizes[version - 1] >> 8;
+        if (bytes[0] == low && bytes[1] == high && bytes[2] == 0 && bytes[3] == 0) {
+            *swapped = false;
+            return version;
+        }
+        if (bytes[0] == 0 && bytes[1] == 0 && bytes[2] == high && bytes[3] == low) {
+            *swapped = true;
+            return version;
+        }
+    }
+    return 0;
+}
+
+/* Printable characters of a field of text, '?' for others. */
+static void copy_text(char *text, const unsigned char *bytes, size_t size)
+{
+    size_t length = 0;
+    while (length < size && bytes[length] != '\0') {
+        length++;
+    }
+    memcpy(text, bytes, length);
+    text[length] = '\0';
+    for (size_t i = 0; i < length; i++) {
+        if (text[i] < ' ' || text[i] > '~') {
+            text[i] = '?';
+        }
+    }
+}
+
+void image_describe(struct image *image, const char *text)
+{
+    size_t length = strlen(text), most = sizeof image->description - 1;
+    copy_text(image->description, (const unsigned char *)text, length < most ? length : most);
+}
+
+void nifti_decode(const unsigned char *bytes, int version, bool swapped, struct nifti *header,
+                  struct image *image)
+{
+    *header = (struct nifti){.version = version, .swapped = swapped};
+    for (int f = 0; f < FIELDS; f++) {
+        nifti_get(nifti_type(fields[f].at[version - 1].type), bytes + fields[f].at[version - 1].offset,
+                  swapped, fields[f].count, (double *)(void *)((char *)header + fields[f].member));
+    }
+    image->version = version;
+    image->intent = (int)header->intent;
+    copy_text(image->description, bytes + description_offset[version - 1], 80);
+    copy_text(image->intent_name, bytes + intent_name_offset[version - 1], 16);
+}
+
+static void sizes_of(const struct image *image, const struct nifti_type *type, double dim[8])
+{
+    bool vector = image->components != (size_t)type->components;
+    for (int i = 0; i < 8; i++) {
+        dim[i] = 1;
+    }
+    dim[0] = vector ? 5 : image->size[2] > 1 ? 3 : 2;
+    for (int i = 0; i < 3; i++) {
+        dim[1 + i] = (double)image->size[i];
+    }
+    dim[5] = vector ? (double)image->components : 1;
+}
+
+/* The version to write: 1 if all sizes fit 16 bits, else 2. */
+static int version_of(const struct image *image)
+{
+    bool fits = image->components <= INT16_MAX;
+    for (int i = 0; i < 3; i++) {
+        fits = fits && image->size[i] <= INT16_MAX;
+    }
+    return fits && image->version != 2 ? 1 : 2;
+}
+
+size_t nifti_encode(const struct image *image, unsigned char bytes[NIFTI2_HEADER + 4])
+{
+    const struct nifti_type *type = nifti_type(image->datatype);
+    int version = version_of(image), size = version == 1 ? NIFTI1_HEADER : NIFTI2_HEADER;
+    double unit = image->unit == 1 || image->unit == 1e-6 ? image->unit : 1e-3; /* what NIfTI knows */
+    struct nifti header = {.datatype = type->code,
+                           .bits = 8 * type->bytes * type->components,
+                           .intent = image->intent,
+                           .pixdim = {1, 1, 1, 1, 1, 1, 1, 1},
+                           .offset = size + 4,
+                           .slope = image->slope,
+                           .inter = image->inter,
+                           .sform = image->space, /* an unknown space stays unknown */
+                           .units = unit > 0.5      ? 1
+                                    : unit > 0.5e-3 ? 2
+                                                    : 3};
+    sizes_of(image, type, header.dim);
+    for (int i = 0; i < 12; i++) {
+        header.srow[i / 4][i % 4] = image->to_world[i / 4][i % 4] / unit;
+    }
+    /* A map that a quaternion cannot represent is only in the sform. */
+    if (quaternion_of(header.srow, header.quatern, header.pixdim)) {
+        header.qform = image->space;
+        for (int r = 0; r < 3; r++) {
+            header.qoffset[r] = header.srow[r][3];
+        }
+    }
+    memset(bytes, 0, NIFTI2_HEADER + 4);
+    bytes[0] = (unsigned char)(size & 255);
+    bytes[1] = (unsigned char)(size >> 8);
+    for (int f = 0; f < FIELDS; f++) {
+        const struct nifti_type *of = nifti_type(fields[f].at[version - 1].type);
+        for (size_t i = 0; i < fields[f].count; i++) {
+            nifti_put(of, ((const double *)(const void *)((const char *)&header + fields[f].member))[i],
+                      bytes + fields[f].at[version - 1].offset + i * (size_t)of->bytes);
+        }
+    }
+    memcpy(bytes + description_offset[version - 1], image->description, strlen(image->description));
+    memcpy(bytes + intent_name_offset[version - 1], image->intent_name, strlen(image->intent_name));
+    memcpy(bytes + magic_offset[version - 1], version == 1 ? magic1 : magic2, version == 1 ? 4 : 8);
+    return (size_t)size + 4;
+}
