@@ -115,9 +115,8 @@ estimate() {
                 estimated = told["iteration error, m"] / sqrt(largest) # with the remaining penetration of contacts
                 true = sqrt(worst / largest)
                 if (sqrt(differences / sizes) > true) true = sqrt(differences / sizes)
-                optimum = told["loading steps"] + log(1 / told["estimated error"]) * told["frequency ratio"] / 2
-                printf "%s\t%s\t%.3g\t%.3g\t%.3g\t%d\t%d\t%.2f\t%s\n", name, tolerance, estimated, true, true / estimated,
-                    told["steps"], told["loading steps"], told["steps"] / optimum, (true <= estimated ? "pass" : "FAIL")
+                printf "%s\t%s\t%.3g\t%.3g\t%.3g\t%d\t%s\n", name, tolerance, estimated, true, true / estimated,
+                    told["force evaluations"], (true <= estimated ? "pass" : "FAIL")
             }' "$work/estimate.run" -
     done
 }
@@ -134,7 +133,7 @@ estimate_run() {
 
 # no_estimate TOLERANCE: the row of a run that fails.
 no_estimate() {
-    printf '%s\t%s\tnone\tnone\t-\t-\t-\t-\tFAIL\n' "$(basename "$0" .sh)" "$1"
+    printf '%s\t%s\tnone\tnone\t-\t-\tFAIL\n' "$(basename "$0" .sh)" "$1"
 }
 
 # place FILE POINT: where the point, in mm, has gone to along z, mm.
