@@ -202,21 +202,13 @@ void newton_let_slip(struct newton *n)
     n->settled = true;
 }
 
-/* What a correction leaves of the residual's norm: `left`, or less where half the tolerance asks for that and
- * no further step then. */
-static double share_left(const struct newton *n)
-{
-    double wanted = 0.5 * n->options->tolerance / n->report->error;
-    return wanted > 0.25 * left ? fmin(wanted, left) : left;
-}
-
 /* The step of the model from u. Where that has no minimum, as friction does not hold the body, the pressures
  * may still be those of a step before, or of another distribution of friction: the body sticks until they
  * have settled. */
 static bool solve(struct newton *n)
 {
     memset(n->step, 0, (size_t)n->size * sizeof *n->step);
-    bool whole = newton_solve_model(n, 0.0, n->settled ? left_at_first : share_left(n), n->radius);
+    bool whole = newton_solve_model(n, 0.0, n->settled ? left_at_first : left, n->radius);
     n->settled = false;
     if (whole || n->sticks || !newton_held_by_friction(n)) {
         return whole;
