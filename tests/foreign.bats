@@ -223,6 +223,8 @@ m.Mesh(a.points, [("tetra", a.cells_dict["tetra10"][:, :4])], cell_data={"id": [
     [ "$(names numbered.vtu)" = body ]
     sed 's/$/\r/' "$corpus/vtk/text.vtk" > windows.vtk
     [ "$(names windows.vtk)" = "a,b n" ]
+    printf '\xef\xbb\xbf' | cat - "$corpus/vtk/text.vtk" > marked.vtk
+    [ "$(names marked.vtk)" = "a,b n" ]
     # facets of tovtk are not nodes of a set of that name
     sed 's/^<PointData>/&<DataArray type="Int8" Name="facets.n">0 1 0 0 1<\/DataArray><DataArray type="Int8" Name="set.">1 1 1 1 1<\/DataArray>/' \
         "$corpus/vtk/text.vtu" > both.vtu

@@ -195,6 +195,12 @@ static const struct format {
                {"# vtk DataFile", NULL, vtk_read},   {NULL, "<febio_spec", feb_read},
                {NULL, "<VTKFile", vtu_read},         {NULL, NULL, inp_read}};
 
+/* Bytes of a byte order mark of UTF-8, which editors put before any text. */
+static size_t mark_size(const char *bytes, size_t size)
+{
+    return size >= 3 && memcmp(bytes, "\xef\xbb\xbf", 3) == 0 ? 3 : 0;
+}
+
 /* The format that a file of these first bytes has, or NULL. */
 static const struct format *find_format(const char *bytes, size_t size)
 {
@@ -212,6 +218,9 @@ static const struct format *find_format(const char *bytes, size_t size)
 enum status msh_parse(struct msh *msh, const char *bytes, size_t size, const char *region_array,
                       struct error *error)
 {
+    size_t mark = mark_size(bytes, size);
+    bytes += mark;
+    size -= mark;
     struct msh_reader reader = {
         .at = bytes, .end = bytes + size, .error = error, .msh = msh, .region_array = region_array};
     const struct format *format = find_format(bytes, size);
@@ -242,7 +251,8 @@ enum status msh_parse(struct msh *msh, const char *bytes, size_t size, const cha
 
 static bool goes_on(const char *bytes, size_t size)
 {
-    return find_format(bytes, size) != NULL;
+    size_t mark = mark_size(bytes, size);
+    return find_format(bytes + mark, size - mark) != NULL;
 }
 
 enum status msh_read(struct msh *msh, int descriptor, const char *name, const char *region_array,
