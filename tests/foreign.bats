@@ -220,6 +220,10 @@ m.Mesh(a.points, [("tetra", a.cells_dict["tetra10"][:, :4])], cell_data={"id": [
     sed 's/gmsh:physical/one/; s/gmsh:geometrical/other/' two.vtu > unknown.vtu
     refused 2 "several arrays of whole numbers: --regions-of names the one with the regions: one, other" nodes -u m unknown.vtu
     refused 2 "the cells have no array 'none' of whole numbers" nodes -u m --regions-of none two.vtu
+    /usr/bin/python3 -c 'import meshio as m; a = m.read("two.vtu"); d = a.cell_data["gmsh:physical"]
+a.cell_data = {"real": [x.astype("f4") * (1 + 1e-7) for x in d], "half": [x / 2 for x in d]}; a.write("real.vtu"); a.write("real.vtk", binary=False)' 2> said
+    [[ $(names --regions-of real real.vtu) == real_3,real_7* && $(names --regions-of real real.vtk) == real_3,real_7* ]]
+    refused 2 "half: 2.5 is not a whole number" nodes -u m --regions-of half real.vtu
     [ "$(names numbered.vtu)" = body ]
     sed 's/$/\r/' "$corpus/vtk/text.vtk" > windows.vtk
     [ "$(names windows.vtk)" = "a,b n" ]

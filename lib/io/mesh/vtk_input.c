@@ -5,6 +5,7 @@
 
 #include "base/lists.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -40,9 +41,17 @@ static bool begins(const char *name, const char *begin)
     return strncmp(name, begin, strlen(begin)) == 0;
 }
 
+/* The array that is asked for as that of the regions, whose numbers may be of a real type. */
+static bool is_asked(const struct msh_reader *r, const struct vtk_array *array)
+{
+    return array->kind == VTK_OF_CELLS && r->region_array != NULL &&
+           strcmp(array->name, r->region_array) == 0;
+}
+
 bool vtk_is_wanted(struct vtk_input *v, const struct vtk_array *array, const struct vtk_type *type)
 {
-    bool whole = type->is_whole && array->components == 1 && !begins(array->name, "vtk");
+    bool any = type->is_whole || (type->size > 0 && is_asked(v->r, array));
+    bool whole = any && array->components == 1 && !begins(array->name, "vtk");
     const char *dot = strchr(array->name, '.'); /* of a name that is not empty */
     bool set = (begins(array->name, "set.") || begins(array->name, "facets.")) && dot[1] != '\0';
     bool of_grid = array->kind >= VTK_POINTS && array->kind <= VTK_TYPES;
@@ -90,21 +99,41 @@ static int64_t whole_of(const struct vtk_type *type, const unsigned char *byte)
     return type->is_signed || bits <= INT64_MAX ? (int64_t)bits : -1;
 }
 
-void vtk_fill_binary(struct vtk_array *array, const struct vtk_type *type, bool swap, const char *bytes)
+/* The whole number that a real one is, to single precision. */
+static int64_t near_whole(struct msh_reader *r, const char *name, double number)
 {
-    for (int64_t i = 0; i < array->count; i++) {
+    double whole = rint(number), rounding = 2.0 * (double)FLT_EPSILON * (1.0 + fabs(number));
+    if (!(fabs(number - whole) <= rounding && fabs(whole) < 1e15)) {
+        msh_fail(r, "%s: %.9g is not a whole number", name, number);
+        return 0;
+    }
+    return (int64_t)whole;
+}
+
+void vtk_fill_binary(struct msh_reader *r, struct vtk_array *array, const struct vtk_type *type, bool swap,
+                     const char *bytes)
+{
+    for (int64_t i = 0; r->status == STATUS_OK && i < array->count; i++) {
         unsigned char byte[8];
         for (int k = 0; k < type->size; k++) {
             byte[k] = (unsigned char)bytes[i * type->size + (swap ? type->size - 1 - k : k)];
         }
         if (type->is_whole) {
             array->whole[i] = whole_of(type, byte);
-        } else if (type->size == 4) {
-            float number;
-            memcpy(&number, byte, sizeof number);
-            array->real[i] = (double)number;
+            continue;
+        }
+        float single;
+        double number;
+        if (type->size == 4) {
+            memcpy(&single, byte, sizeof single);
+            number = (double)single;
         } else {
-            memcpy(&array->real[i], byte, sizeof array->real[i]);
+            memcpy(&number, byte, sizeof number);
+        }
+        if (array->real != NULL) {
+            array->real[i] = number;
+        } else {
+            array->whole[i] = near_whole(r, array->name, number);
         }
     }
 }
@@ -118,6 +147,8 @@ void vtk_fill_text(struct msh_reader *r, struct vtk_array *array, const char **a
             msh_fail(r, "%s: only %lld of %lld numbers", array->name, (long long)i, (long long)array->count);
         } else if (array->real != NULL) {
             array->real[i] = input_real(r, array->name, word, length);
+        } else if (is_asked(r, array)) {
+            array->whole[i] = near_whole(r, array->name, input_real(r, array->name, word, length));
         } else {
             array->whole[i] = input_whole(r, array->name, word, length, INT64_MIN + 1, INT64_MAX);
         }

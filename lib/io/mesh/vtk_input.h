@@ -50,7 +50,8 @@ bool vtk_is_wanted(struct vtk_input *v, const struct vtk_array *array, const str
 struct vtk_array *vtk_add(struct vtk_input *v, const struct vtk_array *array, int64_t count);
 
 /* Fill an array from values as they lie in a file, of the other byte order or not; from words of text. */
-void vtk_fill_binary(struct vtk_array *array, const struct vtk_type *type, bool swap, const char *bytes);
+void vtk_fill_binary(struct msh_reader *r, struct vtk_array *array, const struct vtk_type *type, bool swap,
+                     const char *bytes);
 void vtk_fill_text(struct msh_reader *r, struct vtk_array *array, const char **at, const char *end);
 
 /* Where the bytes of an array of a VTU file begin, and how they lie there. */

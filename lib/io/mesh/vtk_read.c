@@ -121,7 +121,7 @@ static struct vtk_array *read_numbers(struct legacy *l, const struct vtk_array *
         skip_texts(l, count);
     } else if (l->binary) {
         if (added != NULL) {
-            vtk_fill_binary(added, type, true, r->at);
+            vtk_fill_binary(r, added, type, true, r->at);
         }
         r->at += count * size;
         r->at += r->at < r->end && *r->at == '\n';

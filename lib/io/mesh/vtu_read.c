@@ -160,7 +160,7 @@ static void read_binary(struct vtu *u, struct vtu_source *source)
     }
     struct vtk_array *array = vtk_add(&u->v, &u->at.array, count);
     if (array != NULL) {
-        vtk_fill_binary(array, u->at.type, u->swap, bytes);
+        vtk_fill_binary(u->v.r, array, u->at.type, u->swap, bytes);
     }
 }
 
