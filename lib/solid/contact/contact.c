@@ -11,9 +11,9 @@
 
 /* Depths below this share of a point's width count as zero, and differences of unit normals. */
 static const double round_off = 1e-6;
-/* The penalty of a point times its width, beside 2 p^2 / mu with the multiplier p there, by the largest
- * multiplier: its least value, and its value after stiffening. */
-static const double least_modulus = 10.0, most_modulus = 15.0;
+/* The penalty of a point times its width, at least: by the largest multiplier, and by p^2 / mu with the
+ * multiplier p there. */
+static const double by_largest = 15.0, by_square = 3.0;
 /* By the shear modulus: beyond, no surface bears the multiplier; it grows where no pressure closes a gap. */
 static const double most_pressure = 1000.0;
 enum { POINTS_FOR_THREAD = 1000 }; /* see chunks_of */
@@ -129,7 +129,7 @@ void contact_set_stiffness(struct contact *contact, double modulus)
 
 bool contact_stiffen(struct contact *contact, double shear)
 {
-    bool stiffer = false;
+    bool changed = false;
     double largest = 0.0;
     for (int64_t p = 0; p < contact->count; p++) {
         largest = fmax(largest, vector_length(contact->dim, contact->held + p * contact->dim));
@@ -137,13 +137,12 @@ bool contact_stiffen(struct contact *contact, double shear)
     largest = fmin(largest, most_pressure * shear);
     for (int64_t p = 0; p < contact->count && contact->modulus > 0.0; p++) {
         double held = fmin(vector_length(contact->dim, contact->held + p * contact->dim), largest);
-        double least = (least_modulus * largest + 2.0 * held * held / shear) / contact_width(contact, p);
-        if (contact->stiffness[p] < least) {
-            contact->stiffness[p] = most_modulus / least_modulus * least;
-            stiffer = true;
-        }
+        double least = by_largest * largest + by_square * held * held / shear;
+        double stiffness = fmax(contact->modulus, least) / contact_width(contact, p);
+        changed = changed || stiffness != contact->stiffness[p];
+        contact->stiffness[p] = stiffness;
     }
-    return stiffer;
+    return changed;
 }
 
 void contact_free(struct contact *contact)

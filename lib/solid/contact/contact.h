@@ -107,9 +107,9 @@ void contact_point_force(const struct contact *contact, int64_t p, double force[
 /* k_p = modulus / width of the facets there: the stiffness of a layer of cells. */
 void contact_set_stiffness(struct contact *contact, double modulus);
 
-/* Increase the penalty of points where it is too small for the multiplier p there: a boundary of shear
- * modulus `shear` mu (Pa) under p, which acts at a distance of p / k, buckles between its nodes where k times
- * their distance is about p^2 / mu. Returns whether any was increased. */
+/* Set the penalty of points by the multipliers p there, as they are now, whatever they were before: a
+ * boundary of shear modulus `shear` mu (Pa) under p, which acts at a distance of p / k, buckles between its
+ * nodes where k times their distance is about p^2 / mu. Returns whether any has changed. */
 bool contact_stiffen(struct contact *contact, double shear);
 
 /* Visit the state of a contact; the names begin with `prefix`. */

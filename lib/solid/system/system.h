@@ -153,8 +153,8 @@ bool system_contacts_give_way(struct solid_system *system, const double *u, doub
 /* Whether a contact has pressed in an accepted state. */
 bool system_has_touched(const struct solid_system *system);
 
-/* Make the penalties of contacts and conditions stiffer where the pressure at the last evaluation needs it
- * (contact_stiffen); whether any was. */
+/* Make the penalties of conditions stiffer where the pressure at the last evaluation needs it, and set those
+ * of contacts (contact_stiffen); whether any has changed. */
 bool system_stiffen(struct solid_system *system);
 
 /* contact_measure of all contacts at parameters u and system->factor. */
