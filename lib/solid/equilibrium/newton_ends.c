@@ -32,8 +32,8 @@ void newton_augment(struct newton *n)
     }
     bool near = n->corrections > 0 && n->length < most_length * n->report->move;
     bool pressures = near && body_is_limited(&n->system->body);
-    bool contacts = n->system->contact_count > 0 && n->corrections < NEWTON_MOST_AUGMENTATIONS &&
-                    (n->corrections <= 1 || contacts_lack(n));
+    n->gives_way = n->system->contact_count > 0 && contacts_lack(n);
+    bool contacts = n->system->contact_count > 0 && (n->corrections <= 1 || n->gives_way);
     if (pressures) {
         n->pressures_lack =
             body_augment(&n->system->body, n->corrections > 1, most_lack(n), n->report->move / n->body_size);
@@ -98,7 +98,7 @@ static bool is_found(struct newton *n, bool vain)
     }
     bool rounds = report->error <= (vain ? round_off(n) / report->move : 0.0); /* and so do the pressures */
     bool pressures = rounds || !body_is_limited(&n->system->body) || n->pressures_lack <= most_lack(n);
-    bool contacts = !contacts_lack(n) || n->corrections >= NEWTON_MOST_AUGMENTATIONS;
+    bool contacts = !contacts_lack(n);
     report->penetration = system_contact_miss(n->system);
     report->penetration_allowed = system_penetration_allowed(report->move);
     return report->error <= most && pressures && contacts;

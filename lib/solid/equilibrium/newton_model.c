@@ -203,7 +203,7 @@ static void continue_last(struct newton *n, double most)
 bool newton_solve_model(struct newton *n, double of_last, double share, double radius)
 {
     double before = 0.0, mark = 0.0;
-    int augmentations = n->corrections < NEWTON_MOST_AUGMENTATIONS ? MOST_INNER : 0;
+    int augmentations = n->corrections < NEWTON_MOST_AUGMENTATIONS || n->gives_way ? MOST_INNER : 0;
     struct newton_lanczos lanczos = {0};
     begin_model(n);
     if (of_last > 0.0) {

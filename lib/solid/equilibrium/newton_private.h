@@ -38,18 +38,19 @@ struct newton {
     double kept_length; /* the length of the first of them, m, */
     int64_t uphill;     /* their number, */
     double above;       /* and by how much the energy is higher, J (2D: J/m) */
-    double usual;  /* products by which the residual falls to 1/e, the fewest since the preconditioner was
-                      made, */
-    double excess; /* the products that were more than these, since then, */
-    int64_t cost;  /* and the evaluations that making it took */
-    double square; /* r . M^-1 r at the start of the last correction */
-    double lowest; /* least eigenvalue of M^-1 K, from above; INFINITY: not known at this load */
-    bool slides;   /* a contact has friction: every increment of the load ends in an equilibrium */
-    bool rests;    /* at which u is, of the increment before the next one */
-    bool sticks;   /* no point that presses slips, until that is in equilibrium, */
-    bool settled;  /* at which u is, with the pressures there */
-    bool judged;   /* that, and the stability, are of a state near u */
-    double length; /* of that step at the node that moved most, m; INFINITY: it was cut short */
+    double usual;   /* products by which the residual falls to 1/e, the fewest since the preconditioner was
+                       made, */
+    double excess;  /* the products that were more than these, since then, */
+    int64_t cost;   /* and the evaluations that making it took */
+    double square;  /* r . M^-1 r at the start of the last correction */
+    double lowest;  /* least eigenvalue of M^-1 K, from above; INFINITY: not known at this load */
+    bool slides;    /* a contact has friction: every increment of the load ends in an equilibrium */
+    bool rests;     /* at which u is, of the increment before the next one */
+    bool sticks;    /* no point that presses slips, until that is in equilibrium, */
+    bool settled;   /* at which u is, with the pressures there */
+    bool gives_way; /* what the contacts lack at u is more than an equilibrium may have */
+    bool judged;    /* that, and the stability, are of a state near u */
+    double length;  /* of that step at the node that moved most, m; INFINITY: it was cut short */
     double pressures_lack; /* share of the nodal pressures that the multipliers lack; see body_augment */
     double largest_move;   /* so far, of a node, m */
     double best_error;     /* since the load has grown, */
@@ -66,8 +67,8 @@ enum { NEWTON_MOST_ITERATIONS = 500 }; /* of conjugate gradients */
 /* By the largest Rayleigh quotient, about 1: a smaller one is within the round-off of differences of forces.
  */
 #define NEWTON_LEAST_TOLD 1e-6
-/* Corrections at a load in which the multipliers of contacts advance; the penetration that is left is
- * judged. */
+/* Corrections at a load in which the multipliers of contacts advance in any case; later they do where
+ * contacts give way. */
 enum { NEWTON_MOST_AUGMENTATIONS = 24 };
 
 /* Lanczos's matrix of M^-1 K, from conjugate gradients. */

@@ -43,6 +43,7 @@ enum status newton_visit(void *run, const struct state *state, struct error *err
         {"waits", STATE_FLAGS, &n->waits, 1},
         {"judged", STATE_FLAGS, &n->judged, 1},
         {"sticks", STATE_FLAGS, &n->sticks, 1},
+        {"gives_way", STATE_FLAGS, &n->gives_way, 1},
         {"settled", STATE_FLAGS, &n->settled, 1},
         {"rests", STATE_FLAGS, &n->rests, 1},
         {"length", STATE_NUMBERS, &n->length, 1},
