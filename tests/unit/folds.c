@@ -389,6 +389,36 @@ TEST(crease_at_rest)
     }
 }
 
+/* A ring turned inside out: no cell is inverted and nothing crosses. */
+TEST(everted)
+{
+    static struct shape shape;
+    enum { SECTORS = 24 };
+    double y[MOST_NODES * 3];
+    shape = (struct shape){.dim = 2, .nodes = 2 * SECTORS};
+    for (int32_t k = 0; k < 2 * SECTORS; k++) {
+        double angle = 2.0 * M_PI * k / SECTORS, r = k < SECTORS ? 0.5 : 1.0;
+        shape.x[2 * k] = r * cos(angle);
+        shape.x[2 * k + 1] = r * sin(angle);
+    }
+    for (int32_t k = 0; k < SECTORS; k++) {
+        int32_t next = (k + 1) % SECTORS;
+        add_quadrangle(&shape, (int32_t[]){k, next, k + SECTORS, next + SECTORS}, 0);
+    }
+    finish(&shape, -1, 0.0);
+    turn(&shape, 3.0, 1.2, y);
+    assert_int_equal(found(&shape, y).kind, FOLD_NONE);
+    for (int64_t k = 0; k < shape.nodes; k++) {
+        double r = hypot(shape.x[2 * k], shape.x[2 * k + 1]);
+        y[2 * k] = (1.5 - r) / r * shape.x[2 * k];
+        y[2 * k + 1] = (r - 1.5) / r * shape.x[2 * k + 1];
+    }
+    struct fold fold = found(&shape, y);
+    assert_int_equal(fold.kind, FOLD_EVERTED);
+    assert_int_equal(fold.count, SECTORS); /* the outer facets */
+    folds_free(&shape.folds);
+}
+
 /* Bodies that interpenetrate: at rest, and when one is moved; a boundary crosses only where one is not wholly
  * within. */
 TEST(another_body)

@@ -69,7 +69,8 @@ static const struct {
 } words[] = {[FOLD_CELL] = {"cell ", " is turned over", false},
              [FOLD_CREASE] = {"facets of ", " pass through each other", true},
              [FOLD_CROSSING] = {"", " goes through ", true},
-             [FOLD_WITHIN] = {"cell ", " is within another one", true}};
+             [FOLD_WITHIN] = {"cell ", " is within another one", true},
+             [FOLD_EVERTED] = {"", " is turned inside out", true}};
 
 void run_folds_describe(const struct run *run, char *text, size_t size)
 {

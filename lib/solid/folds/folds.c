@@ -104,6 +104,7 @@ enum status folds_build(const struct fold_input *input, struct folds *folds, str
     RETURN_IF_ERROR(NEW_ARRAY(&folds->found, ranks_count(input->ranks), error));
     RETURN_IF_ERROR(build_rings(folds, error));
     RETURN_IF_ERROR(mark_held(folds, error));
+    RETURN_IF_ERROR(folds_find_surfaces(folds, error));
     NEW_SCRATCH(double, u, size, error);
     NEW_SCRATCH(bool, stopped, input->node_count, error);
     RETURN_IF_ERROR(folds_find_bodies(folds, error));
@@ -121,6 +122,6 @@ enum status folds_build(const struct fold_input *input, struct folds *folds, str
 void folds_free(struct folds *folds)
 {
     FREE_ALL(folds->rings, folds->ring_ptr, folds->ring_cell, folds->oriented, folds->is_held, folds->part,
-             folds->bodies, folds->y, folds->boxes, folds->found);
+             folds->bodies, folds->surface, folds->enclosed, folds->y, folds->boxes, folds->found);
     *folds = (struct folds){0};
 }

@@ -28,7 +28,8 @@ enum fold_kind {
     FOLD_CREASE, /* the facets that meet at a node (2D) or an edge (3D) have passed through each other */
     FOLD_CROSSING, /* two parts of the boundary have passed through each other: by a twentieth of their facets
                     */
-    FOLD_WITHIN    /* a body lies within another; or a cell within a cell that it shares no node with */
+    FOLD_WITHIN,   /* a body lies within another; or a cell within a cell that it shares no node with */
+    FOLD_EVERTED   /* a body is turned inside out: it passed through itself on the way */
 };
 
 struct fold {
@@ -77,6 +78,7 @@ struct folds {
     bool *is_held;  /* node_count: of a prescribed facet */
     double extent;  /* diagonal of the box around the nodes, m */
     int32_t *part;  /* cell_count: the connected body of each cell */
+    int32_t *surface;         /* facet_count: a node of the connected surface of each facet */
     struct fold_body *bodies; /* body_count */
     int64_t body_count;
     struct fold
@@ -85,6 +87,7 @@ struct folds {
     /* Of the search. */
     const bool *stopped;     /* see folds_find */
     double *y;               /* node_count * dim: positions */
+    double *enclosed;        /* 2 * node_count: volumes within surfaces, by their nodes; at rest, now */
     double largest;          /* of their coordinates, m */
     struct facet_box *boxes; /* facet_count, ascending */
     struct fold *found;      /* of several processes: the folds found by each */

@@ -10,7 +10,7 @@ static const double full_turn = 6.28318530717958648;
 
 enum { ITEMS_FOR_THREAD = 2000 }; /* see chunks_of */
 
-static const double turned_share = 0.1; /* see is_turned_over; twice as much: folds_list_flat */
+static const double turned_share = 0.1;     /* see is_turned_over; twice as much: folds_list_flat */
 static const double uncertain_share = 0.25; /* see most_angle */
 
 void fold_name_facets(const struct fold_input *input, int64_t facet, int64_t other, struct fold *fold)
@@ -222,6 +222,9 @@ struct fold folds_find(struct folds *folds, const double *u, const bool *stopped
         fold = search(folds, folds->input.facet_count, folds_search_boxes);
         if (fold.kind == FOLD_NONE) {
             folds_find_within(folds, &fold);
+        }
+        if (fold.kind == FOLD_NONE) {
+            folds_find_everted(folds, &fold);
         }
     }
     return fold;

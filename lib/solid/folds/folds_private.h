@@ -32,6 +32,16 @@ void folds_sort_boxes(struct folds *folds);
 /* Search the boxes [begin, end) and those behind them for facets that cross. */
 struct fold folds_search_boxes(const struct folds *folds, int64_t begin, int64_t end);
 
+/* ---- folds_everted.c ---- */
+
+/* Find the surfaces of the boundary, facets that have nodes together. */
+MUST_CHECK enum status folds_find_surfaces(struct folds *folds, struct error *error);
+
+/* Look for surfaces that enclosed a volume at rest, as the outer ones of bodies do, and enclose less than
+ * none: the body is outside of them. No motion without folds leads there, though at the end nothing crosses
+ * and no cell is inverted. */
+void folds_find_everted(const struct folds *folds, struct fold *fold);
+
 /* ---- folds_within.c ---- */
 
 /* Look for a body within another, where boundaries do not cross. */
