@@ -76,9 +76,8 @@ static double check_coarser(const struct tool *tool, double ratio, const struct 
     double found = field_error_ratio(&fine->field.cells, &coarse->field.cells);
     if (!(found > 1.0)) {
         tool_fail(tool, STATUS_INPUT,
-                  "%s has %lld nodes, %s %lld: the coarser result comes second, on a cloud of its own",
-                  fine->name, (long long)fine->field.cells.node_count, coarse->name,
-                  (long long)coarse->field.cells.node_count);
+                  "%s has %jd nodes, %s %jd: the coarser result comes second, on a cloud of its own",
+                  fine->name, fine->field.cells.node_count, coarse->name, coarse->field.cells.node_count);
     }
     if (found < least_agreement * ratio || found > most_agreement * ratio) {
         tool_note(tool, "%s has %.2g times as many cells per direction as %s, not %.3g: see -r", fine->name,

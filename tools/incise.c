@@ -111,7 +111,7 @@ static void tell(const struct tool *tool, const struct incise_options *options,
 {
     const char *size = dim == 2 ? "m" : "m2", *volume = dim == 2 ? "m2" : "m3";
     if (report->unopened > 0) {
-        tool_note(tool, "%lld parts of the blade open nothing", (long long)report->unopened);
+        tool_note(tool, "%jd parts of the blade open nothing", report->unopened);
     }
     if (options->least == 0.0 && report->smallest < small_piece * report->volume) {
         tool_note(tool, "a piece of %.3g %s, %.2g %% of the body, is cut off: see -l", report->smallest,
@@ -121,15 +121,15 @@ static void tell(const struct tool *tool, const struct incise_options *options,
         tool_note(tool, "pieces taken out: %d, %.4g %s", (int)report->taken_out, report->taken, volume);
     }
     if (tool_given(tool, "verbose") && options->region != NULL) {
-        tool_note(tool, "%s: %lld cells taken out", options->region, (long long)report->region_cells);
+        tool_note(tool, "%s: %jd cells taken out", options->region, report->region_cells);
     }
     if (tool_given(tool, "verbose") && options->blade != NULL) {
         tool_note(tool,
-                  "%s: faces of %.4g %s, %lld nodes on the edge; nodes: %lld put on edges, %lld moved, %lld "
+                  "%s: faces of %.4g %s, %jd nodes on the edge; nodes: %jd put on edges, %jd moved, %jd "
                   "doubled; pieces: %d, the smallest of %.4g %s; poorest quality of a cell %.2g",
-                  options->name, report->face_area, size, (long long)report->edge, (long long)report->split,
-                  (long long)report->moved, (long long)report->doubled,
-                  (int)(report->pieces - report->taken_out), report->smallest, volume, report->poorest);
+                  options->name, report->face_area, size, report->edge, report->split, report->moved,
+                  report->doubled, (int)(report->pieces - report->taken_out), report->smallest, volume,
+                  report->poorest);
     }
 }
 

@@ -155,9 +155,9 @@ static enum status drop_outside(const struct tool *tool, const struct cells *cel
             char place[96];
             point_text(dim, points->x + i * dim, place);
             return fail(error, STATUS_INPUT,
-                        "%s: row %lld at %s: farther from the body than the spacing of its nodes: is the "
+                        "%s: row %jd at %s: farther from the body than the spacing of its nodes: is the "
                         "unit right? --skip-outside leaves such points out",
-                        file, (long long)i, place);
+                        file, i, place);
         }
         if (!outside[i]) {
             memmove(points->x + kept * dim, points->x + i * dim, (size_t)dim * sizeof *points->x);
@@ -168,8 +168,8 @@ static enum status drop_outside(const struct tool *tool, const struct cells *cel
         return fail(error, STATUS_INPUT, "%s: no point lies in the body: is the unit right?", file);
     }
     if (kept < points->count) {
-        tool_note(tool, "%s: %lld of %lld points lie outside of the body: left out", file,
-                  (long long)(points->count - kept), (long long)points->count);
+        tool_note(tool, "%s: %jd of %jd points lie outside of the body: left out", file,
+                  (points->count - kept), points->count);
     }
     points->count = kept;
     return STATUS_OK;

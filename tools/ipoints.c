@@ -110,11 +110,11 @@ int main(int argc, char *argv[])
     struct ipoints_options ipoints = parse_for(&tool, &stream);
     TOOL_TRY(&tool, stage_ipoints(&stream, &ipoints, &unresolved, &error));
     if (unresolved > 0) {
-        tool_note(&tool, "%lld cells change by more than the tolerance even at level %d",
-                  (long long)unresolved, ipoints.refinement.levels);
+        tool_note(&tool, "%jd cells change by more than the tolerance even at level %d", unresolved,
+                  ipoints.refinement.levels);
     }
     if (tool_given(&tool, "verbose")) {
-        tool_note(&tool, "%lld points", (long long)stream_find(&stream, "points.x")->rows);
+        tool_note(&tool, "%jd points", stream_find(&stream, "points.x")->rows);
     }
     tool_write(&tool, &stream);
     return tool_end(&tool);

@@ -154,8 +154,7 @@ static int recover(struct tool *tool)
     FREED_BY(descriptor_close) int descriptor = tool_open(tool, tool->operands[1], &name);
     tool_check(tool, stream_recover(&stream, descriptor, name, &why, &error), &error);
     if (why.text[0] != '\0') {
-        tool_note(tool, "%s: %s: took the %lld sections before", name, why.text,
-                  (long long)stream.section_count);
+        tool_note(tool, "%s: %s: took the %jd sections before", name, why.text, stream.section_count);
     }
     tool_write(tool, &stream);
     return tool_end(tool);

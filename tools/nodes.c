@@ -66,7 +66,7 @@ static void list_groups(const struct msh *msh)
     puts("name\tdim\ttag\telements");
     for (int32_t i = 0; i < msh->group_count; i++) {
         const struct msh_group *group = &msh->groups[i];
-        printf("%s\t%d\t%d\t%lld\n", group->name, group->dim, group->tag, (long long)group->element_count);
+        printf("%s\t%d\t%d\t%jd\n", group->name, group->dim, group->tag, group->element_count);
     }
 }
 
@@ -85,14 +85,13 @@ static void report(const struct tool *tool, const struct mesh *mesh, bool verbos
         return;
     }
     TOOL_TRY(tool, cell_report_make(&cells, INFINITY, &cell_report, &error));
-    tool_note(tool, "%lld nodes, %lld cells, box %s, %s %.4g %s, %d connected bod%s",
-              (long long)mesh->node_count, (long long)mesh->cell_count, box_text(&box, text),
-              mesh->dim == 2 ? "area" : "volume", cell_report.volume, mesh->dim == 2 ? "m2" : "m3",
-              cell_report.bodies, cell_report.bodies == 1 ? "y" : "ies");
+    tool_note(tool, "%jd nodes, %jd cells, box %s, %s %.4g %s, %d connected bod%s", mesh->node_count,
+              mesh->cell_count, box_text(&box, text), mesh->dim == 2 ? "area" : "volume", cell_report.volume,
+              mesh->dim == 2 ? "m2" : "m3", cell_report.bodies, cell_report.bodies == 1 ? "y" : "ies");
     tool_note(tool, "quality of the cells: least %.2g, median %.2g", cell_report.least_median[0],
               cell_report.least_median[1]);
     for (int i = 0; i < cell_report.listed && i < 3; i++) {
-        tool_note(tool, "cell %lld: %s", (long long)cell_report.poorest[i].cell,
+        tool_note(tool, "cell %jd: %s", cell_report.poorest[i].cell,
                   cell_report_describe(&cells, &cell_report.poorest[i], text));
     }
 }

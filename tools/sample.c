@@ -174,14 +174,13 @@ static void sample_image(const struct tool *tool, const struct request *request,
     point_text(rows->dim, rows->x + first_outside * rows->dim, place);
     if (!request->has_outside) {
         tool_fail(tool, STATUS_INPUT,
-                  "%s: row %lld at %s m, one of %lld of %lld: outside of %s, or not finite there: is the "
+                  "%s: row %jd at %s m, one of %jd of %jd: outside of %s, or not finite there: is the "
                   "unit right? "
                   "--outside V gives such points a value",
-                  rows->what, (long long)first_outside, place, (long long)outside, (long long)rows->count,
-                  name);
+                  rows->what, first_outside, place, outside, rows->count, name);
     }
-    tool_note(tool, "%s: %lld of %lld points are outside of %s, or it is not finite there: %g taken",
-              rows->what, (long long)outside, (long long)rows->count, name, request->outside);
+    tool_note(tool, "%s: %jd of %jd points are outside of %s, or it is not finite there: %g taken",
+              rows->what, outside, rows->count, name, request->outside);
 }
 
 static void check_probabilities(const struct tool *tool, const struct image *image, const char *name)
@@ -270,15 +269,15 @@ static void find_moduli(const struct tool *tool, const struct tissue *tissue, st
             char place[96];
             point_text(rows->dim, rows->x + p * rows->dim, place);
             tool_fail(tool, STATUS_INPUT,
-                      "%s: row %lld at %s m: no tissue has a probability above 0 there (--outside 1 gives "
+                      "%s: row %jd at %s m: no tissue has a probability above 0 there (--outside 1 gives "
                       "points outside "
                       "of the images the mean of all)",
-                      rows->what, (long long)p, place);
+                      rows->what, p, place);
         }
     }
     if (beyond > 0) {
-        tool_note(tool, "%lld of %lld values lie beyond the table of --material: its first or last row taken",
-                  (long long)beyond, (long long)rows->count);
+        tool_note(tool, "%jd of %jd values lie beyond the table of --material: its first or last row taken",
+                  beyond, rows->count);
     }
     free(rows->value);
     rows->value = *moduli;

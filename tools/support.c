@@ -96,17 +96,15 @@ static void note_report(const struct tool *tool, const struct support_report *re
     if (report->visibility == VISIBILITY_DISTANCE) {
         tool_note(tool, "neighbours by distance alone: supports act across gaps");
     }
-    tool_note(tool, "widened at %lld points, at most %.3g times", (long long)widened, widest);
+    tool_note(tool, "widened at %jd points, at most %.3g times", widened, widest);
     for (int l = 0; l < report->lists; l++) {
         const struct list_report *list = &report->list[l];
         const struct support_lists *found = &list->lists;
-        tool_note(tool, "%lld %s: %lld to %lld neighbours, mean %.1f, widened at %lld",
-                  (long long)found->count, list->what, (long long)found->fewest, (long long)found->most,
-                  found->count > 0 ? (double)list->pairs / (double)found->count : 0.0,
-                  (long long)found->widened);
+        tool_note(tool, "%jd %s: %jd to %jd neighbours, mean %.1f, widened at %jd", found->count, list->what,
+                  found->fewest, found->most,
+                  found->count > 0 ? (double)list->pairs / (double)found->count : 0.0, found->widened);
         if (found->around_count > 0) {
-            tool_note(tool, "%lld neighbours of %s are around corners", (long long)found->around_count,
-                      list->what);
+            tool_note(tool, "%jd neighbours of %s are around corners", found->around_count, list->what);
         }
     }
 }

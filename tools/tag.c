@@ -123,8 +123,8 @@ static enum status make_group(const struct request *request, enum group_kind kin
     if (count == 0) {
         struct box box = box_of(body->cells.dim, body->cells.node_count, body->cells.x);
         char place[128];
-        return fail(error, STATUS_INPUT, "chooses none of %lld %s; the body's box is %s",
-                    (long long)items->count, plural(kind), box_text(&box, place));
+        return fail(error, STATUS_INPUT, "chooses none of %jd %s; the body's box is %s", items->count,
+                    plural(kind), box_text(&box, place));
     }
     return group_put(body, kind, name, chosen, error);
 }
@@ -244,7 +244,7 @@ static void report(const struct tool *tool, const struct group_body *body, enum 
             size += vector_length(dim, normal);
         }
     }
-    text_append(text, sizeof text, "%lld", (long long)count);
+    text_append(text, sizeof text, "%jd", count);
     if (kind != GROUP_NODES) {
         bool region = kind == GROUP_REGION;
         int power = dim - !region;

@@ -70,8 +70,8 @@ static void write_series(const struct tool *tool, struct plot *plot)
     for (int64_t i = 0; i < count; i++) {
         int64_t frame = plot->frame_count > 0 ? plot->frames[i] : FRAME_NONE;
         TOOL_TRY(tool, plot_time(plot, frame, &times[i], &error));
-        paths[i] = tool_text(tool, "%.*s-%04lld.vtu", (int)stem, tool->output,
-                             frame == FRAME_NONE ? 0LL : (long long)frame);
+        paths[i] =
+            tool_text(tool, "%.*s-%04jd.vtu", (int)stem, tool->output, frame == FRAME_NONE ? 0 : frame);
         write_vtu(tool, plot, frame, paths[i]);
         names[i] = paths[i] + folder;
     }
@@ -106,8 +106,8 @@ int main(int argc, char *argv[])
     } else {
         write_vtu(&tool, &plot, FRAME_NONE, tool.output);
         if (plot.frame_count > 0) {
-            tool_note(&tool, "only the final state is written: name a .pvd file for all %lld frames",
-                      (long long)plot.frame_count);
+            tool_note(&tool, "only the final state is written: name a .pvd file for all %jd frames",
+                      plot.frame_count);
         }
     }
     return tool_end(&tool);

@@ -164,9 +164,8 @@ static void report_cells(const struct tool *tool, const struct cells *cells, dou
     if (!verbose) {
         return;
     }
-    tool_note(tool, "spacing %g m: %lld nodes, %lld cells, %s from %.1f to %.1f degrees", spacing,
-              (long long)cells->node_count, (long long)cells->count,
-              cells->dim == 3 ? "dihedral angles" : "angles", least, most);
+    tool_note(tool, "spacing %g m: %jd nodes, %jd cells, %s from %.1f to %.1f degrees", spacing,
+              cells->node_count, cells->count, cells->dim == 3 ? "dihedral angles" : "angles", least, most);
 }
 
 static void report(const struct tool *tool, const struct label_image *image, const struct label_cells *result,
@@ -178,19 +177,17 @@ static void report(const struct tool *tool, const struct label_image *image, con
                   100 * result->unsized);
     }
     if (result->specks > 0) {
-        tool_note(tool, "%lld bodies no larger than the spacing, %.3g %s in all, are left out",
-                  (long long)result->specks, shown(cells.dim, result->speck_volume),
-                  cells.dim == 3 ? "ml" : "cm2");
+        tool_note(tool, "%jd bodies no larger than the spacing, %.3g %s in all, are left out", result->specks,
+                  shown(cells.dim, result->speck_volume), cells.dim == 3 ? "ml" : "cm2");
     }
     if (result->pinched > 0) {
-        tool_note(tool, "bodies that hung together by a node or an edge alone are cut apart at %lld nodes",
-                  (long long)result->pinched);
+        tool_note(tool, "bodies that hung together by a node or an edge alone are cut apart at %jd nodes",
+                  result->pinched);
     }
     if (result->hinges > 0) {
-        tool_note(
-            tool,
-            "parts of a body touch by a node or an edge alone at %lld nodes: --fine may tell them apart",
-            (long long)result->hinges);
+        tool_note(tool,
+                  "parts of a body touch by a node or an edge alone at %jd nodes: --fine may tell them apart",
+                  result->hinges);
     }
     report_labels(tool, image, result, &cells, verbose);
     report_bodies(tool, &cells, verbose);
@@ -199,9 +196,8 @@ static void report(const struct tool *tool, const struct label_image *image, con
         tool_note_thin(tool, &cells);
     }
     if (verbose || result->astray > 0) {
-        tool_note(tool, "nodes of interfaces: farthest %.2g voxels off, %lld of them more than %g",
-                  result->farthest / labels_voxel(&image->labels), (long long)result->astray,
-                  LABEL_CELLS_MOST_ASTRAY);
+        tool_note(tool, "nodes of interfaces: farthest %.2g voxels off, %jd of them more than %g",
+                  result->farthest / labels_voxel(&image->labels), result->astray, LABEL_CELLS_MOST_ASTRAY);
     }
 }
 

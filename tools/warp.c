@@ -116,8 +116,8 @@ static void parse(const struct tool *tool, struct warp_request *request)
         tool_fail(tool, STATUS_INPUT, "--%s is for images, not for --field", of_image);
     }
     if (tool_given(tool, "frame")) {
-        snprintf(request->section, sizeof request->section, "u.frame.%lld",
-                 (long long)tool_integer(tool, "frame", 0, INT32_MAX, 0));
+        snprintf(request->section, sizeof request->section, "u.frame.%jd",
+                 tool_integer(tool, "frame", 0, INT32_MAX, 0));
     }
     tool_check_image_output(tool);
 }
@@ -131,7 +131,7 @@ static const double *find_field(const struct tool *tool, const struct stream *st
     const double *values = u->data;
     for (int64_t i = 0; i < u->rows * u->cols; i++) {
         if (!(fabs(values[i]) <= 1e100)) {
-            tool_fail(tool, STATUS_INPUT, "%s: row %lld: is not finite", name, (long long)(i / u->cols));
+            tool_fail(tool, STATUS_INPUT, "%s: row %jd: is not finite", name, (i / u->cols));
         }
     }
     return values;
@@ -146,41 +146,39 @@ static void print_report(const struct tool *tool, const struct warp_request *req
     int64_t first = 0, folded = motion_folded(motion, &first);
     if (folded > 0) {
         tool_note(tool,
-                  "%lld of %lld cells are folded (the first: row %lld of cells), and left out: what lies "
+                  "%jd of %jd cells are folded (the first: row %jd of cells), and left out: what lies "
                   "there shows "
                   "their neighbours or stays",
-                  (long long)folded, (long long)motion->cells.count, (long long)first);
+                  folded, motion->cells.count, first);
     }
     if (report->beyond > 0) {
-        tool_note(tool, "%lld voxels show places outside of the image: %s there", (long long)report->beyond,
+        tool_note(tool, "%jd voxels show places outside of the image: %s there", report->beyond,
                   request->fill.others ? "the value of --fill" : "0");
     }
     if (report->left > 0) {
-        tool_note(tool, "%lld voxels that the body left keep their old value: see --vacated",
-                  (long long)report->left);
+        tool_note(tool, "%jd voxels that the body left keep their old value: see --vacated", report->left);
     }
     if (!request->verbose) {
         return;
     }
     tool_note(tool, "%s", image_text(grid, text));
     tool_note(tool,
-              dim == 3 ? "%lld voxels in the %sbody, %.6g ml; displacement at most %.4g mm"
-                       : "%lld voxels in the %sbody, %.6g cm2; displacement at most %.4g mm",
-              (long long)report->moved, request->inverse ? "" : "moved ",
+              dim == 3 ? "%jd voxels in the %sbody, %.6g ml; displacement at most %.4g mm"
+                       : "%jd voxels in the %sbody, %.6g cm2; displacement at most %.4g mm",
+              report->moved, request->inverse ? "" : "moved ",
               (dim == 3 ? 1e6 : 1e4) * (double)report->moved * voxel_volume(grid, dim),
               1e3 * report->farthest);
     if (report->doubly > 0) {
-        tool_note(tool, "%lld voxels lie in two parts of the moved body", (long long)report->doubly);
+        tool_note(tool, "%jd voxels lie in two parts of the moved body", report->doubly);
     }
     if (tool_given(tool, "vacated")) {
-        tool_note(tool, "%lld voxels were left by the body", (long long)report->vacated);
+        tool_note(tool, "%jd voxels were left by the body", report->vacated);
     }
     if (!request->inverse) {
-        tool_note(
-            tool,
-            "inverse map: largest residual %.2g voxels; Newton did not converge to %.0e in %lld voxels, "
-            "where the linear inverse of the cell is taken",
-            report->inconsistency / least_step(grid, dim), tolerance, (long long)report->inexact);
+        tool_note(tool,
+                  "inverse map: largest residual %.2g voxels; Newton did not converge to %.0e in %jd voxels, "
+                  "where the linear inverse of the cell is taken",
+                  report->inconsistency / least_step(grid, dim), tolerance, report->inexact);
     }
 }
 

@@ -200,8 +200,7 @@ enum status parse_integer(const char *text, const char *what, int64_t least, int
         return fail(error, STATUS_INPUT, "%s: '%s' is not a whole number", what, text);
     }
     if (errno == ERANGE || number < least || number > most) {
-        return fail(error, STATUS_INPUT, "%s: %s is not within [%lld, %lld]", what, text, (long long)least,
-                    (long long)most);
+        return fail(error, STATUS_INPUT, "%s: %s is not within [%jd, %jd]", what, text, least, most);
     }
     *value = number;
     return STATUS_OK;

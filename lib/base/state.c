@@ -7,7 +7,7 @@ static enum status check_counts(const struct state_value *value, struct error *e
     const int64_t *counts = value->values;
     for (int64_t i = 0; value->type == STATE_COUNTS && i < value->count; i++) {
         if (counts[i] < 0) {
-            return fail(error, STATUS_INPUT, "%s: %lld is negative", value->name, (long long)counts[i]);
+            return fail(error, STATUS_INPUT, "%s: %jd is negative", value->name, counts[i]);
         }
     }
     return STATUS_OK;

@@ -47,8 +47,7 @@ static enum status check_unity(const struct neighbours *lists, const struct sect
             sum += value[i];
         }
         if (!(fabs(sum - 1) <= COARSE_ROUND_OFF)) {
-            return fail(error, STATUS_INPUT, "%s: list %lld: sums to 1 %+.3g", phi->name, (long long)row,
-                        sum - 1);
+            return fail(error, STATUS_INPUT, "%s: list %jd: sums to 1 %+.3g", phi->name, row, sum - 1);
         }
     }
     return STATUS_OK;
@@ -108,8 +107,8 @@ static enum status check_faces(const struct stream *stream, const struct cells *
     for (size_t i = 0; i < sizeof expected / sizeof *expected; i++) {
         const struct section *section = stream_find(stream, expected[i].name);
         if (section != NULL && section->rows != expected[i].rows) {
-            return fail(error, STATUS_INPUT, "%s: %lld rows, but the faces ask for %lld", section->name,
-                        (long long)section->rows, (long long)expected[i].rows);
+            return fail(error, STATUS_INPUT, "%s: %jd rows, but the faces ask for %jd", section->name,
+                        section->rows, expected[i].rows);
         }
     }
     return STATUS_OK;

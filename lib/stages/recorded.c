@@ -80,8 +80,8 @@ static void describe(const struct recorded *recorded, char text[DESCRIPTION])
     describe_mls(&recorded->shapes, " shape_", shapes, sizeof shapes);
     if (options->least != usual.least || options->most != usual.most || options->widen != usual.widen ||
         options->gradient_bound != usual.gradient_bound) {
-        snprintf(lists, sizeof lists, " least=%lld most=%lld widen=%d bound=%.17g", (long long)options->least,
-                 (long long)options->most, options->widen, options->gradient_bound);
+        snprintf(lists, sizeof lists, " least=%jd most=%jd widen=%d bound=%.17g", options->least,
+                 options->most, options->widen, options->gradient_bound);
     }
     snprintf(text, DESCRIPTION, "unit=m reach=%s %s%s%s", visibility_names[options->visibility], mls, lists,
              same ? "" : shapes);

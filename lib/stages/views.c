@@ -38,16 +38,15 @@ enum status section_check_shape(const struct stream *stream, const struct sectio
                     element_type_name(section->type), element_type_name(kind->type));
     }
     if (kind->cols == COLS_DIM && section->cols != 2 && section->cols != 3) {
-        return fail(error, STATUS_INPUT, "%s: %lld columns instead of 2 or 3", section->name,
-                    (long long)section->cols);
+        return fail(error, STATUS_INPUT, "%s: %jd columns instead of 2 or 3", section->name, section->cols);
     }
     if ((kind->cols > 0 || dim > 0) && section->cols != cols) {
-        return fail(error, STATUS_INPUT, "%s: %lld columns instead of %lld", section->name,
-                    (long long)section->cols, (long long)cols);
+        return fail(error, STATUS_INPUT, "%s: %jd columns instead of %jd", section->name, section->cols,
+                    cols);
     }
     if (section->rows != rows) {
-        return fail(error, STATUS_INPUT, "%s: does not fit %s: %lld rows instead of %lld: run %s again",
-                    section->name, other->name, (long long)section->rows, (long long)rows, producer(kind));
+        return fail(error, STATUS_INPUT, "%s: does not fit %s: %jd rows instead of %jd: run %s again",
+                    section->name, other->name, section->rows, rows, producer(kind));
     }
     return STATUS_OK;
 }
@@ -72,8 +71,8 @@ enum status section_check_numbers(const struct section *section, enum content co
         double value = values[i];
         if (!isfinite(value) || (content == POSITIVE && !(value > 0.0)) ||
             (content == AT_LEAST_ONE && !(value >= 1.0))) {
-            return fail(error, STATUS_INPUT, "%s: row %lld: %.17g is not %s", section->name,
-                        (long long)(i / section->cols), value, required[content]);
+            return fail(error, STATUS_INPUT, "%s: row %jd: %.17g is not %s", section->name,
+                        (i / section->cols), value, required[content]);
         }
     }
     return STATUS_OK;
@@ -85,8 +84,8 @@ enum status section_check_indices(const struct section *section, int64_t least, 
     const int32_t *number = section->data;
     for (int64_t i = 0; i < section->rows * section->cols; i++) {
         if (number[i] < least || number[i] >= bound) {
-            return fail(error, STATUS_INPUT, "%s: row %lld: no %s %d%s", section->name,
-                        (long long)(i / section->cols), what, number[i], why);
+            return fail(error, STATUS_INPUT, "%s: row %jd: no %s %d%s", section->name, (i / section->cols),
+                        what, number[i], why);
         }
     }
     return STATUS_OK;
@@ -100,7 +99,7 @@ enum status stream_nodes(const struct stream *stream, int *dim, int64_t *node_co
     const struct section *nodes;
     RETURN_IF_ERROR(stream_view(stream, "nodes.x", &nodes, error));
     if (nodes->rows < 1 || nodes->rows > INT32_MAX) {
-        return fail(error, STATUS_INPUT, "nodes.x: %lld rows: not a cloud of nodes", (long long)nodes->rows);
+        return fail(error, STATUS_INPUT, "nodes.x: %jd rows: not a cloud of nodes", nodes->rows);
     }
     *dim = (int)nodes->cols;
     if (node_count != NULL) {
@@ -130,8 +129,8 @@ enum status stream_field(const struct stream *stream, const char *name, int cols
     RETURN_IF_ERROR(stream_need(stream, name, TYPE_F8, cols, "mtled", field, error));
     if ((*field)->cols > 3 || (*field)->rows != node_count) {
         return fail(error, STATUS_INPUT,
-                    "%s: %lld rows of %lld columns: not a field of 1 to 3 columns on %lld nodes", name,
-                    (long long)(*field)->rows, (long long)(*field)->cols, (long long)node_count);
+                    "%s: %jd rows of %jd columns: not a field of 1 to 3 columns on %jd nodes", name,
+                    (*field)->rows, (*field)->cols, node_count);
     }
     return STATUS_OK;
 }
@@ -206,8 +205,7 @@ static enum status view_edges(const struct stream *stream, struct faces *faces, 
     for (int64_t i = 0; i < faces->count * 3; i++) {
         if (faces->edge[i] < 0 || faces->edge[i] > faces->edge_count) {
             return fail(error, STATUS_INPUT,
-                        "faces.edge: row %lld: not the edges of this face: run ipoints again",
-                        (long long)(i / 3));
+                        "faces.edge: row %jd: not the edges of this face: run ipoints again", (i / 3));
         }
         faces->edge_count += faces->edge[i] == faces->edge_count;
     }
@@ -226,12 +224,12 @@ enum status stream_faces(const struct stream *stream, const struct cells *cells,
     RETURN_IF_ERROR(section_check_indices(cell, -1, cells->count, "cell", "", error));
     for (int64_t f = 0; f < faces->count; f++) {
         if (faces->cell[2 * f] < 0) {
-            return fail(error, STATUS_INPUT, "faces.cell: row %lld: no cell -1", (long long)f);
+            return fail(error, STATUS_INPUT, "faces.cell: row %jd: no cell -1", f);
         }
         if (faces->cell[2 * f + 1] < 0 && faces->boundary_count++ < f) {
             return fail(error, STATUS_INPUT,
-                        "faces.cell: row %lld: on the boundary, after faces between cells: run ipoints again",
-                        (long long)f);
+                        "faces.cell: row %jd: on the boundary, after faces between cells: run ipoints again",
+                        f);
         }
     }
     return view_edges(stream, faces, error);
@@ -269,8 +267,8 @@ static enum status view_around(const struct stream *stream, const char *prefix, 
     *around = (struct around){.count = pair->rows, .pair = pair->data, .offset = image->data};
     for (int64_t i = 0; i < pair->rows; i++) {
         if (around->pair[i] < (i > 0 ? around->pair[i - 1] + 1 : 0) || around->pair[i] >= pairs) {
-            return fail(error, STATUS_INPUT, "%s.around: row %lld: no neighbour %lld, or not ascending",
-                        prefix, (long long)i, (long long)around->pair[i]);
+            return fail(error, STATUS_INPUT, "%s.around: row %jd: no neighbour %jd, or not ascending", prefix,
+                        i, around->pair[i]);
         }
     }
     return section_check_numbers(image, FINITE, error);
@@ -290,15 +288,15 @@ enum status stream_neighbours(const struct stream *stream, const char *prefix, i
     }
     for (int64_t p = 0; p < rows; p++) {
         if (lists->ptr[p + 1] < lists->ptr[p]) {
-            return fail(error, STATUS_INPUT, "%s.ptr: row %lld: decreases", prefix, (long long)p + 1);
+            return fail(error, STATUS_INPUT, "%s.ptr: row %jd: decreases", prefix, p + 1);
         }
     }
     RETURN_IF_ERROR(section_check_indices(idx, 0, columns, "node", "", error));
     for (int64_t p = 0; p < rows; p++) {
         for (int64_t i = lists->ptr[p] + 1; i < lists->ptr[p + 1]; i++) {
             if (lists->idx[i] <= lists->idx[i - 1]) {
-                return fail(error, STATUS_INPUT, "%s.idx: row %lld: %d does not ascend to %d", prefix,
-                            (long long)i, lists->idx[i - 1], lists->idx[i]);
+                return fail(error, STATUS_INPUT, "%s.idx: row %jd: %d does not ascend to %d", prefix, i,
+                            lists->idx[i - 1], lists->idx[i]);
             }
         }
     }

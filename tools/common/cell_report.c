@@ -53,10 +53,10 @@ enum status cell_report_hanging(const struct cells *cells, int64_t named_count, 
     point_text(cells->dim, found->place, place);
     if (found->count > 0) {
         snprintf(said, 512,
-                 "nodes on a facet of another %s, without being its corners: %lld, the first at %s m: the "
+                 "nodes on a facet of another %s, without being its corners: %jd, the first at %s m: the "
                  "sides are not joined there: mesh both alike (in gmsh: BooleanFragments, or Coherence, "
                  "before meshing); %s",
-                 *parts ? "cell" : "body or face of a slit", (long long)found->count, place,
+                 *parts ? "cell" : "body or face of a slit", found->count, place,
                  *parts ? "the faces of a slit need names (physical groups)"
                         : "where they are to touch, the scene needs a contact");
     }

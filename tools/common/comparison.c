@@ -51,8 +51,8 @@ void sides_check(const struct tool *tool, const struct side *first, const struct
 {
     const struct nodal_field *a = &first->field, *b = &second->field;
     if (a->cells.dim != b->cells.dim || a->cols != b->cols) {
-        tool_fail(tool, STATUS_INPUT, "%s: %lld columns in %dD against %lld columns in %dD",
-                  first->section->name, (long long)a->cols, a->cells.dim, (long long)b->cols, b->cells.dim);
+        tool_fail(tool, STATUS_INPUT, "%s: %jd columns in %dD against %jd columns in %dD",
+                  first->section->name, a->cols, a->cells.dim, b->cols, b->cells.dim);
     }
 }
 
@@ -60,8 +60,8 @@ static bool has_unknown(const struct tool *tool, const struct side *side)
 {
     for (int64_t i = 0; i < side->field.cells.node_count * side->field.cols; i++) {
         if (!isfinite(side->field.values[i])) {
-            tool_note(tool, "%s: %s: row %lld: not a finite number", side->name, side->section->name,
-                      (long long)(i / side->field.cols));
+            tool_note(tool, "%s: %s: row %jd: not a finite number", side->name, side->section->name,
+                      (i / side->field.cols));
             return true;
         }
     }
@@ -166,9 +166,9 @@ void print_findings(const struct tool *tool, const struct findings *findings, co
     print_quantity("max", NULL, all->largest);
     print_quantity("rmse", NULL, all->rmse);
     print_percentiles(all, tool_given(tool, "percentiles"));
-    printf("n\t%lld\n", (long long)all->count);
+    printf("n\t%jd\n", all->count);
     if (!comparison->coincide) {
-        printf("outside\t%lld\n", (long long)comparison->outside);
+        printf("outside\t%jd\n", comparison->outside);
     }
     printf("clouds\t%s\n", comparison->coincide ? "coincide" : "interpolated");
     for (int i = 0; i < cells->dim; i++) {
@@ -206,7 +206,7 @@ static enum status print_regions(const struct findings *findings, struct error *
                 node[count++] = comparison->node[i];
             }
         }
-        printf("n.%s\t%lld\n", names->name[r], (long long)count);
+        printf("n.%s\t%jd\n", names->name[r], count);
         if (count > 0) {
             RETURN_IF_ERROR(field_statistics(count, node, comparison->difference, &statistics, error));
             print_quantity("avg", names->name[r], statistics.average);

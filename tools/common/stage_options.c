@@ -26,10 +26,10 @@ void support_note_steep(const struct tool *tool, const struct support_options *o
         const struct steep_points *steep = &list->lists.steep;
         if (steep->count > 0) {
             tool_note(tool,
-                      "%s: %lld of %lld have gradients beyond the bound with all radii; the least steep are "
+                      "%s: %jd of %jd have gradients beyond the bound with all radii; the least steep are "
                       "taken: worst at %s m, |grad phi| times spacing %.3g for %g",
-                      list->what, (long long)steep->count, (long long)list->lists.count, list->steepest,
-                      steep->steepness, options->gradient_bound);
+                      list->what, steep->count, list->lists.count, list->steepest, steep->steepness,
+                      options->gradient_bound);
         }
     }
 }

@@ -58,8 +58,7 @@ void sample_points_section(const struct tool *tool, const char *file, const char
     }
     TOOL_TRY(tool, stream_need(stream, name, TYPE_F8, 0, "nodes", &at, &error));
     if (at->cols < 2 || at->cols > 3) {
-        tool_fail(tool, STATUS_INPUT, "%s: %lld columns: points have 2 or 3 coordinates", name,
-                  (long long)at->cols);
+        tool_fail(tool, STATUS_INPUT, "%s: %jd columns: points have 2 or 3 coordinates", name, at->cols);
     }
     *rows = (struct sample_points){.what = name, .dim = (int)at->cols, .count = at->rows};
     TOOL_TRY(tool, NEW_ARRAY(&rows->x, at->rows * at->cols, &error));

@@ -137,7 +137,7 @@ static enum status add_groups(struct stream *stream, const char *prefix, const s
         for (int64_t i = 0; i < count * per; i++) {
             value[node[i]] |= group[i / per] == g;
         }
-        snprintf(name, sizeof name, DERIVED_GROUP "%s%lld", prefix, (long long)g);
+        snprintf(name, sizeof name, DERIVED_GROUP "%s%jd", prefix, g);
         if (asprintf(&label, "label=%s.%s", prefix, names->name[g]) < 0) {
             label = NULL;
             return fail_memory(error, "labels");

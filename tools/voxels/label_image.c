@@ -35,9 +35,8 @@ static void fail_value(const struct tool *tool, const struct image *image, int64
     int64_t nx = (int64_t)image->size[0], ny = (int64_t)image->size[1];
     tool_fail(
         tool, STATUS_INPUT,
-        "voxel %lld %lld %lld is %.9g: labels are whole numbers from 0: is it a scan or a probability map?",
-        (long long)(voxel % nx), (long long)(voxel / nx % ny), (long long)(voxel / nx / ny),
-        image->values[voxel]);
+        "voxel %jd %jd %jd is %.9g: labels are whole numbers from 0: is it a scan or a probability map?",
+        (voxel % nx), (voxel / nx % ny), (voxel / nx / ny), image->values[voxel]);
 }
 
 static void collect_values(const struct tool *tool, const struct image *image, struct values *values)
@@ -83,7 +82,7 @@ static void name_values(const struct tool *tool, const struct image *image, cons
                       "%d different labels: is it a scan? Otherwise name and merge them by -l TABLE",
                       values->count);
         }
-        snprintf(name, sizeof name, "label_%lld", (long long)range.first);
+        snprintf(name, sizeof name, "label_%jd", range.first);
         TOOL_TRY(tool, label_table_name(table, name, true, &range.name, &error));
         TOOL_TRY(tool, label_table_add(table, &range, &error));
     }
@@ -97,8 +96,8 @@ static void label_values(const struct tool *tool, struct values *values, struct 
         int32_t name = 0;
         if (!label_table_find(&image->table, values->value[v], &name)) {
             tool_fail(tool, STATUS_INPUT,
-                      "%s: no row for label %lld, of %lld voxels: name it, or write '%lld -'", table,
-                      (long long)values->value[v], (long long)values->voxels[v], (long long)values->value[v]);
+                      "%s: no row for label %jd, of %jd voxels: name it, or write '%jd -'", table,
+                      values->value[v], values->voxels[v], values->value[v]);
         }
         values->label[v] = (uint16_t)name;
         image->volume[name] += (double)values->voxels[v] * image->voxel_volume;

@@ -45,8 +45,8 @@ void label_sizes_read(const struct tool *tool, const struct label_image *image, 
                   sizes->cells.dim, image->labels.dim);
     }
     if (section->rows != sizes->cells.node_count) {
-        tool_fail(tool, STATUS_INPUT, "--sizes: size: %lld rows for %lld nodes", (long long)section->rows,
-                  (long long)sizes->cells.node_count);
+        tool_fail(tool, STATUS_INPUT, "--sizes: size: %jd rows for %jd nodes", section->rows,
+                  sizes->cells.node_count);
     }
     sizes->size = section->data;
     TOOL_TRY(tool, fail_in(&error, section_check_numbers(section, POSITIVE, &error), "--sizes"));

@@ -133,9 +133,9 @@ static void uncross(const struct tool *tool, const struct label_cells *mesh,
             text_append(text, sizeof text, "%s%.4g", d > 0 ? ", " : "", 1e3 * mesh->x[first * dim + d]);
         }
         tool_note(tool,
-                  "--gap: %lld nodes are moved by less, the first at (%s) mm: the surface would cross itself "
+                  "--gap: %jd nodes are moved by less, the first at (%s) mm: the surface would cross itself "
                   "there, as where a furrow is narrower than twice the gap",
-                  (long long)nodes, text);
+                  nodes, text);
     }
 }
 

@@ -9,7 +9,7 @@ enum { DEEPEST = 64 };
 void json_fail(struct json *json, const char *what)
 {
     if (json->status == STATUS_OK) {
-        json->status = fail(json->error, STATUS_INPUT, "%lld: %s", (long long)json->line, what);
+        json->status = fail(json->error, STATUS_INPUT, "%jd: %s", json->line, what);
     }
 }
 

@@ -214,12 +214,10 @@ static enum status read_fcsv(struct landmarks *landmarks, char *text, struct err
     for (char *rest = text; *rest != '\0'; number++) {
         char *line = strsep(&rest, "\n");
         if (rest == NULL) {
-            return fail(error, STATUS_INPUT, "%lld: last line without newline: truncated?",
-                        (long long)number);
+            return fail(error, STATUS_INPUT, "%jd: last line without newline: truncated?", number);
         }
         line[strcspn(line, "\r")] = '\0';
-        RETURN_IF_ERROR(
-            fail_in(error, read_line(landmarks, line, number, column, error), "%lld", (long long)number));
+        RETURN_IF_ERROR(fail_in(error, read_line(landmarks, line, number, column, error), "%jd", number));
     }
     return STATUS_OK;
 }
@@ -252,7 +250,7 @@ enum status landmarks_read(const char *path, struct table *table, struct error *
 static void print_label(FILE *file, const char *label, int64_t row, bool json)
 {
     if (label == NULL || label[0] == '\0') {
-        fprintf(file, "F-%lld", (long long)row + 1);
+        fprintf(file, "F-%jd", row + 1);
         return;
     }
     for (; *label != '\0'; label++) {
@@ -280,12 +278,12 @@ void landmarks_print(FILE *file, const char *path, int64_t count, const double *
         double sign = json ? -1e3 : 1e3; /* .fcsv in RAS: not all programs read another system there */
         const double mm[3] = {sign * x[3 * i] + 0.0, sign * x[3 * i + 1] + 0.0, 1e3 * x[3 * i + 2] + 0.0};
         if (json) {
-            fprintf(file, "%s\n   {\"id\": \"%lld\", \"label\": \"", i > 0 ? "," : "", (long long)i + 1);
+            fprintf(file, "%s\n   {\"id\": \"%jd\", \"label\": \"", i > 0 ? "," : "", i + 1);
             print_label(file, name, row, true);
             fprintf(file, "\", \"position\": [%.15g, %.15g, %.15g], \"positionStatus\": \"defined\"}", mm[0],
                     mm[1], mm[2]);
         } else {
-            fprintf(file, "%lld,%.15g,%.15g,%.15g,0,0,0,1,1,1,0,\"", (long long)i + 1, mm[0], mm[1], mm[2]);
+            fprintf(file, "%jd,%.15g,%.15g,%.15g,0,0,0,1,1,1,0,\"", i + 1, mm[0], mm[1], mm[2]);
             print_label(file, name, row, false);
             fputs("\",,\n", file);
         }

@@ -39,8 +39,8 @@ static enum status read_binary_stl(const char *path, const struct textfile *file
         for (int i = 0; i < 9; i++) {
             row[i] = (double)corner[i];
             if (!isfinite(row[i])) {
-                return fail(error, STATUS_INPUT, "%s: triangle %lld: coordinate that is not finite", path,
-                            (long long)t + 1);
+                return fail(error, STATUS_INPUT, "%s: triangle %jd: coordinate that is not finite", path,
+                            t + 1);
             }
         }
         RETURN_IF_ERROR(table_append(table, row, t + 1, NULL, error));
@@ -69,8 +69,7 @@ static bool next_word(struct words *words)
 
 static enum status fail_word(const struct words *words, const char *what, struct error *error)
 {
-    return fail(error, STATUS_INPUT, "%s:%lld: '%.40s' %s", words->path, (long long)words->line, words->word,
-                what);
+    return fail(error, STATUS_INPUT, "%s:%jd: '%.40s' %s", words->path, words->line, words->word, what);
 }
 
 static enum status read_vector(struct words *words, double x[3], struct error *error)
@@ -159,14 +158,14 @@ static enum status check_curves(const char *path, const struct table *table, str
         int64_t begin = table->block_ptr[b];
         int64_t end = table->block_ptr[b + 1];
         if (end - begin < 2) {
-            return fail(error, STATUS_INPUT, "%s:%lld: curve of one point: a curve has at least two", path,
-                        (long long)table->line[begin]);
+            return fail(error, STATUS_INPUT, "%s:%jd: curve of one point: a curve has at least two", path,
+                        table->line[begin]);
         }
         for (int64_t r = begin + 1; r < end; r++) {
             const double *a = table->values + 2 * (r - 1);
             if (!(hypot(a[2] - a[0], a[3] - a[1]) > 0)) {
-                return fail(error, STATUS_INPUT, "%s:%lld: repeats the point before: remove it", path,
-                            (long long)table->line[r]);
+                return fail(error, STATUS_INPUT, "%s:%jd: repeats the point before: remove it", path,
+                            table->line[r]);
             }
         }
     }
@@ -183,8 +182,8 @@ static enum status check_triangles(const char *path, const struct table *table, 
         vector_cross(u, v, normal);
         double area = hypot(hypot(normal[0], normal[1]), normal[2]);
         if (!(area > 0 && isfinite(area))) {
-            return fail(error, STATUS_INPUT, "%s:%lld: triangle without area: remove it", path,
-                        (long long)table->line[r]);
+            return fail(error, STATUS_INPUT, "%s:%jd: triangle without area: remove it", path,
+                        table->line[r]);
         }
     }
     return STATUS_OK;

@@ -71,8 +71,7 @@ static enum status read_row(const char *path, int64_t line, const char *text, co
         struct error why;
         memcpy(word, text, length < sizeof word ? length : sizeof word - 1);
         if (*count == COLUMN_LIMIT) {
-            return fail(error, STATUS_INPUT, "%s:%lld: more than %d columns", path, (long long)line,
-                        COLUMN_LIMIT);
+            return fail(error, STATUS_INPUT, "%s:%jd: more than %d columns", path, line, COLUMN_LIMIT);
         }
         if (*count >= form->open && *count < form->closed && is_no_value(word)) {
             row[(*count)++] = NAN;
@@ -80,8 +79,8 @@ static enum status read_row(const char *path, int64_t line, const char *text, co
         }
         if (length >= sizeof word ||
             parse_double(word, "", -DBL_MAX, DBL_MAX, &row[*count], &why) != STATUS_OK) {
-            return fail(error, STATUS_INPUT, "%s:%lld: column %d: '%s' is not a finite number%s", path,
-                        (long long)line, *count + 1, word,
+            return fail(error, STATUS_INPUT, "%s:%jd: column %d: '%s' is not a finite number%s", path, line,
+                        *count + 1, word,
                         strpbrk(word, ",;") != NULL ? ": write decimal points, and blanks between numbers"
                                                     : "");
         }
@@ -101,16 +100,16 @@ static enum status check_columns(const char *path, int64_t line, const struct ta
 {
     int least = form->least, most = form->most;
     if (table->rows > 0 && count != table->cols) {
-        return fail(error, STATUS_INPUT, "%s:%lld: has %d columns, the rows before %lld", path,
-                    (long long)line, count, (long long)table->cols);
+        return fail(error, STATUS_INPUT, "%s:%jd: has %d columns, the rows before %jd", path, line, count,
+                    table->cols);
     }
     if (count >= least && count <= most) {
         return STATUS_OK;
     }
-    return least == most ? fail(error, STATUS_INPUT, "%s:%lld: has %d columns, not %d", path, (long long)line,
-                                count, least)
-                         : fail(error, STATUS_INPUT, "%s:%lld: has %d columns, not %d to %d", path,
-                                (long long)line, count, least, most);
+    return least == most
+               ? fail(error, STATUS_INPUT, "%s:%jd: has %d columns, not %d", path, line, count, least)
+               : fail(error, STATUS_INPUT, "%s:%jd: has %d columns, not %d to %d", path, line, count, least,
+                      most);
 }
 
 static enum status read_form(const char *path, const struct form *form, struct table *table,

@@ -74,21 +74,20 @@ static enum status textfile_check(const char *path, const struct textfile *file,
     if (memcmp(file->text, "\xef\xbb\xbf", file->size < 3 ? 1 : 3) == 0 || bytes[0] >= 0xfe) {
         return fail(error, STATUS_INPUT, "%s:1: begins with a byte order mark: save as plain text", path);
     }
-    long long line = 1;
+    int64_t line = 1;
     for (size_t i = 0; i < file->size; i++) {
         unsigned char c = bytes[i];
         if (c == '\n') {
             line++;
         } else if (c == '\r') {
-            return fail(error, STATUS_INPUT, "%s:%lld: carriage return: save with Unix line ends", path,
-                        line);
+            return fail(error, STATUS_INPUT, "%s:%jd: carriage return: save with Unix line ends", path, line);
         } else if ((c < 0x20 && c != '\t') || c == 0x7f) {
-            return fail(error, STATUS_INPUT, "%s:%lld: control character 0x%02x", path, line, (unsigned)c);
+            return fail(error, STATUS_INPUT, "%s:%jd: control character 0x%02x", path, line, (unsigned)c);
         }
     }
     if (file->text[file->size - 1] != '\n') {
         return fail(error, STATUS_INPUT,
-                    "%s:%lld: last line without newline: truncated? end it with a newline", path, line);
+                    "%s:%jd: last line without newline: truncated? end it with a newline", path, line);
     }
     return STATUS_OK;
 }

@@ -33,9 +33,8 @@ enum status label_table_add(struct label_table *table, const struct label_range 
 {
     for (int32_t r = 0; r < table->range_count; r++) {
         if (range->first <= table->range[r].last && table->range[r].first <= range->last) {
-            return fail(
-                error, STATUS_INPUT, "label %lld stands in another row already",
-                (long long)(range->first > table->range[r].first ? range->first : table->range[r].first));
+            return fail(error, STATUS_INPUT, "label %jd stands in another row already",
+                        (range->first > table->range[r].first ? range->first : table->range[r].first));
         }
     }
     if (table->range_count == RANGES_LIMIT) {
@@ -176,7 +175,7 @@ enum status label_table_read(const char *path, struct label_table *table, struct
     RETURN_IF_ERROR(textfile_read(path, size_limit, &file, error));
     for (char *rest = file.text; *rest != '\0'; number++) {
         char *line = strsep(&rest, "\n");
-        RETURN_IF_ERROR(fail_in(error, add_row(table, line, error), "%s:%lld", path, (long long)number));
+        RETURN_IF_ERROR(fail_in(error, add_row(table, line, error), "%s:%jd", path, number));
     }
     return table->range_count > 0 || table->others ? STATUS_OK
                                                    : fail(error, STATUS_INPUT, "%s: names no label", path);

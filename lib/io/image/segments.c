@@ -68,13 +68,13 @@ static enum status check_layers(struct image *image, struct error *error)
     for (size_t s = 0; s < image->segment_count; s++) {
         segment[s].layer = segment[s].layer >= 0 ? segment[s].layer : image->components > 1 ? (int64_t)s : 0;
         if (segment[s].layer >= (int64_t)image->components) {
-            return fail(error, STATUS_INPUT, "header: segment '%s' is in layer %lld of %zu (from 0)",
-                        segment[s].name, (long long)segment[s].layer, image->components);
+            return fail(error, STATUS_INPUT, "header: segment '%s' is in layer %jd of %zu (from 0)",
+                        segment[s].name, segment[s].layer, image->components);
         }
         for (size_t o = 0; o < s; o++) {
             if (segment[o].layer == segment[s].layer && segment[o].label == segment[s].label) {
-                return fail(error, STATUS_INPUT, "header: segments '%s' and '%s' have the same label, %lld",
-                            segment[o].name, segment[s].name, (long long)segment[s].label);
+                return fail(error, STATUS_INPUT, "header: segments '%s' and '%s' have the same label, %jd",
+                            segment[o].name, segment[s].name, segment[s].label);
             }
         }
     }
@@ -170,9 +170,9 @@ void image_segments_print(const struct image *image, FILE *file)
     }
     for (size_t s = 0; s < image->segment_count; s++) {
         fprintf(file,
-                "Segment%zu_ID:=Segment_%zu\nSegment%zu_Name:=%s\nSegment%zu_LabelValue:=%lld\n"
+                "Segment%zu_ID:=Segment_%zu\nSegment%zu_Name:=%s\nSegment%zu_LabelValue:=%jd\n"
                 "Segment%zu_Layer:=0\nSegment%zu_Extent:=0 %zu 0 %zu 0 %zu\n",
-                s, s + 1, s, image->segment[s].name, s, (long long)image->segment[s].label, s, s,
-                image->size[0] - 1, image->size[1] - 1, image->size[2] - 1);
+                s, s + 1, s, image->segment[s].name, s, image->segment[s].label, s, s, image->size[0] - 1,
+                image->size[1] - 1, image->size[2] - 1);
     }
 }

@@ -113,7 +113,7 @@ enum status header_integer(const struct text_header *header, int64_t least, int6
         *number = (int64_t)value;
         return STATUS_OK;
     }
-    snprintf(why, sizeof why, "from %lld to %lld is possible", (long long)least, (long long)most);
+    snprintf(why, sizeof why, "from %jd to %jd is possible", least, most);
     return header_fail(header, why, error);
 }
 

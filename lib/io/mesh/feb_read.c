@@ -162,7 +162,7 @@ static void add_node(struct feb *f, const char *text, const char *end)
         x[k] = input_real(f->r, "coordinate", word != NULL ? word : "", length);
     }
     if (input_word(&text, end, ',', &length) != NULL) {
-        msh_fail(f->r, "node %lld has more than three coordinates", (long long)f->id);
+        msh_fail(f->r, "node %jd has more than three coordinates", f->id);
     }
     msh_add_node(f->r, f->id, x);
 }

@@ -128,8 +128,8 @@ static void note_sets(struct inp *p, int64_t overlaid)
     for (int64_t s = 0; s < p->set_count; s++) {
         const struct inp_set *set = p->sets[s];
         if (set->found < set->asked) {
-            input_note(p->r, "set '%s': of what its lines of GENERATE name, only %lld of %lld exist",
-                       set->name, (long long)set->found, (long long)set->asked);
+            input_note(p->r, "set '%s': of what its lines of GENERATE name, only %jd of %jd exist", set->name,
+                       set->found, set->asked);
         }
         if (set->kind == 'E' && !set->of_surface && (set->key[1] | set->key[2] | set->key[3]) == 0) {
             text_append(left, sizeof left, "%s%s", left[0] != '\0' ? ", " : "", set->name);
@@ -139,7 +139,7 @@ static void note_sets(struct inp *p, int64_t overlaid)
         input_note(p->r, "sets of elements that are not regions, left out: %s", left);
     }
     if (overlaid > 0) {
-        input_note(p->r, "elements in several sets, taken for the last: %lld", (long long)overlaid);
+        input_note(p->r, "elements in several sets, taken for the last: %jd", overlaid);
     }
 }
 

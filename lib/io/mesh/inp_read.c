@@ -200,7 +200,7 @@ static void read_element(struct inp *p, int type, bool is_shell)
     for (int k = -1; k < count && r->status == STATUS_OK;) {
         if (!inp_next_field(p, &word, &length)) {
             if (!inp_next_data(p)) {
-                msh_fail(r, "element %lld ends after %d of %d nodes", (long long)tag, k, count);
+                msh_fail(r, "element %jd ends after %d of %d nodes", tag, k, count);
             }
             continue;
         }
@@ -209,7 +209,7 @@ static void read_element(struct inp *p, int type, bool is_shell)
         k++;
     }
     if (inp_next_field(p, &word, &length)) {
-        msh_fail(r, "element %lld has more than %d nodes", (long long)tag, count);
+        msh_fail(r, "element %jd has more than %d nodes", tag, count);
     }
     if (type == LINE3) { /* end, middle, end */
         int64_t end = node[2];

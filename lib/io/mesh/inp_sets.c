@@ -84,7 +84,7 @@ static void add_word(struct inp *p, struct inp_set *set, char kind, const char *
             return;
         }
         if (one[0] < 0) {
-            msh_fail(p->r, "there is no %s %lld as yet", kind == 'N' ? "node" : "element", (long long)tag);
+            msh_fail(p->r, "there is no %s %jd as yet", kind == 'N' ? "node" : "element", tag);
         }
     } else {
         struct inp_set *other = find_set(p, kind, word, (size_t)length);
@@ -140,8 +140,7 @@ static void read_ranges(struct inp *p, struct inp_set *set)
             msh_fail(p->r, "GENERATE: a line is not FIRST, LAST, STEP");
         }
         if (count > 1 && number[1] < number[0]) {
-            msh_fail(p->r, "GENERATE: %lld is behind %lld: write the lesser one first", (long long)number[0],
-                     (long long)number[1]);
+            msh_fail(p->r, "GENERATE: %jd is behind %jd: write the lesser one first", number[0], number[1]);
         }
         if (count > 1 && !p->is_apart && p->r->status == STATUS_OK) {
             add_range(p, set, number);
@@ -160,7 +159,7 @@ static void add_corners(struct inp *p, struct inp_set *set, const char *name)
         for (int k = 0; k < msh_type(element->type).node_count; k++) {
             int64_t tag = p->r->corners[element->first + k], node = msh_index_find(&p->r->nodes, tag);
             if (node < 0) {
-                msh_fail(p->r, "there is no node %lld as yet", (long long)tag);
+                msh_fail(p->r, "there is no node %jd as yet", tag);
             }
             inp_add_member(p, set, node);
         }

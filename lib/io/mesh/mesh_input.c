@@ -23,8 +23,7 @@ void msh_fail(struct msh_reader *r, const char *format, ...)
     if (r->record == 0) {
         r->status = fail(r->error, STATUS_INPUT, "%s: %s", r->section, message);
     } else {
-        r->status = fail(r->error, STATUS_INPUT, "%s: %s %lld: %s", r->section, r->kind, (long long)r->record,
-                         message);
+        r->status = fail(r->error, STATUS_INPUT, "%s: %s %jd: %s", r->section, r->kind, r->record, message);
     }
 }
 
@@ -109,8 +108,7 @@ int64_t msh_count(struct msh_reader *r, const char *what, int64_t text, int64_t 
     int64_t count = msh_size(r, what, 0, INT64_MAX);
     int64_t left = r->end - r->at;
     if (count > left / (r->binary ? binary : text)) {
-        msh_fail(r, "%s: %lld cannot be in the %lld bytes that are left", what, (long long)count,
-                 (long long)left);
+        msh_fail(r, "%s: %jd cannot be in the %jd bytes that are left", what, count, left);
     }
     return r->status == STATUS_OK ? count : 0;
 }
@@ -159,8 +157,7 @@ int64_t input_whole(struct msh_reader *r, const char *what, const char *word, in
 int64_t input_within(struct msh_reader *r, const char *what, int64_t number, int64_t least, int64_t most)
 {
     if (number < least || number > most) {
-        msh_fail(r, "%s: %lld is not within [%lld, %lld]", what, (long long)number, (long long)least,
-                 (long long)most);
+        msh_fail(r, "%s: %jd is not within [%jd, %jd]", what, number, least, most);
     }
     return r->status == STATUS_OK ? number : least;
 }

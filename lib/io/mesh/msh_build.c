@@ -116,8 +116,7 @@ static enum status build_nodes(struct mesh_draft *draft)
         draft->node_of[n] = draft->node_of[n] == KEPT ? (int32_t)mesh->node_count++ : -1;
     }
     if (lost > 0) {
-        RETURN_IF_ERROR(
-            mesh_add_note(draft, "midside nodes, and nodes of no cell, left out: %lld", (long long)lost));
+        RETURN_IF_ERROR(mesh_add_note(draft, "midside nodes, and nodes of no cell, left out: %jd", lost));
     }
     RETURN_IF_ERROR(NEW_ARRAY(&mesh->x, mesh->node_count * mesh->dim, draft->error));
     for (int64_t n = 0; n < msh->node_count; n++) {
@@ -178,9 +177,8 @@ static enum status add_cell(struct mesh_draft *draft, int64_t element, int32_t r
     memcpy(cell, simplex, (size_t)(mesh->dim + 1) * sizeof *cell);
     double volume = relative_volume(mesh, cell);
     if (!(fabs(volume) > ROUND_OFF)) {
-        return fail(draft->error, STATUS_INPUT, "element %lld has no %s (its relative size is %.3g)",
-                    (long long)draft->msh->elements[element].tag, mesh->dim == 2 ? "area" : "volume",
-                    fabs(volume));
+        return fail(draft->error, STATUS_INPUT, "element %jd has no %s (its relative size is %.3g)",
+                    draft->msh->elements[element].tag, mesh->dim == 2 ? "area" : "volume", fabs(volume));
     }
     if (volume < 0) {
         cell[0] = simplex[1];
@@ -202,7 +200,7 @@ static enum status build_cells(struct mesh_draft *draft)
         count += draft->region_of[e] >= 0 ? mesh_simplices(draft, e, simplices) : 0;
     }
     if (count > INT32_MAX) {
-        return fail(draft->error, STATUS_INPUT, "%lld cells are more than %d", (long long)count, INT32_MAX);
+        return fail(draft->error, STATUS_INPUT, "%jd cells are more than %d", count, INT32_MAX);
     }
     RETURN_IF_ERROR(NEW_ARRAY(&mesh->cells, count * (mesh->dim + 1), draft->error));
     RETURN_IF_ERROR(NEW_ARRAY(&mesh->cell_region, count, draft->error));
@@ -226,11 +224,10 @@ static enum status fail_coincident(const struct mesh_draft *draft, int32_t a, in
             tags[draft->node_of[n] == (a > b ? a : b)] = draft->msh->nodes[n].tag;
         }
     }
-    return fail(
-        draft->error, STATUS_INPUT,
-        "nodes %lld and %lld are at the same place, in one body: merge them (Coherence Mesh), or name "
-        "the facets of a slit",
-        (long long)tags[0], (long long)tags[1]);
+    return fail(draft->error, STATUS_INPUT,
+                "nodes %jd and %jd are at the same place, in one body: merge them (Coherence Mesh), or name "
+                "the facets of a slit",
+                tags[0], tags[1]);
 }
 
 /* slit[node_count]: whether a node is on a facet that has a group. */
@@ -290,16 +287,16 @@ static enum status check_coincident(struct mesh_draft *draft)
     if (doubled > 0) {
         RETURN_IF_ERROR(
             mesh_add_note(draft,
-                          "nodes at the same place, on named facets of one body: %lld pairs: it has "
+                          "nodes at the same place, on named facets of one body: %jd pairs: it has "
                           "a slit there",
-                          (long long)doubled));
+                          doubled));
     }
     if (touching > 0) {
         RETURN_IF_ERROR(mesh_add_note(
             draft,
-            "nodes at the same place, of different bodies: %lld pairs: the bodies are not joined "
+            "nodes at the same place, of different bodies: %jd pairs: the bodies are not joined "
             "there (Coherence Mesh in gmsh joins them)",
-            (long long)touching));
+            touching));
     }
     return STATUS_OK;
 }

@@ -68,9 +68,9 @@ static enum status count_boundary(struct gathering *g)
             int64_t a = faces->face[end - 2].item / (faces->dim + 1),
                     b = faces->face[end - 1].item / (faces->dim + 1);
             return fail(draft->error, STATUS_INPUT,
-                        "elements %lld and %lld overlap: one is inverted, or there twice (of '%s', of '%s')",
-                        (long long)draft->msh->elements[draft->origin[a]].tag,
-                        (long long)draft->msh->elements[draft->origin[b]].tag,
+                        "elements %jd and %jd overlap: one is inverted, or there twice (of '%s', of '%s')",
+                        draft->msh->elements[draft->origin[a]].tag,
+                        draft->msh->elements[draft->origin[b]].tag,
                         draft->mesh->regions.name[draft->mesh->cell_region[a]],
                         draft->mesh->regions.name[draft->mesh->cell_region[b]]);
         }
@@ -161,13 +161,13 @@ static enum status add_face(struct gathering *g, int32_t group, const int32_t no
 static enum status note_tally(struct gathering *g, const struct msh_group *group, const struct tally *tally)
 {
     if (tally->elsewhere > 0) {
-        RETURN_IF_ERROR(mesh_add_note(g->draft, "group '%s': facets of no cell, left out: %lld", group->name,
-                                      (long long)tally->elsewhere));
+        RETURN_IF_ERROR(mesh_add_note(g->draft, "group '%s': facets of no cell, left out: %jd", group->name,
+                                      tally->elsewhere));
     }
     if (tally->interior > 0) {
         RETURN_IF_ERROR(mesh_add_note(g->draft,
-                                      "group '%s': facets between two cells, made a set of nodes: %lld",
-                                      group->name, (long long)tally->interior));
+                                      "group '%s': facets between two cells, made a set of nodes: %jd",
+                                      group->name, tally->interior));
     }
     return STATUS_OK;
 }
@@ -207,10 +207,9 @@ static enum status gather_nodes(struct gathering *g, int32_t group)
         }
     }
     RETURN_IF_ERROR(close_set(g, group));
-    return lost == 0
-               ? STATUS_OK
-               : mesh_add_note(g->draft, "group '%s': midside nodes or nodes of no cell, left out: %lld",
-                               msh->groups[group].name, (long long)lost);
+    return lost == 0 ? STATUS_OK
+                     : mesh_add_note(g->draft, "group '%s': midside nodes or nodes of no cell, left out: %jd",
+                                     msh->groups[group].name, lost);
 }
 
 static enum status gather_groups(struct gathering *g)

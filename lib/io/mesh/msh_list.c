@@ -68,7 +68,7 @@ void msh_check_nodes(struct msh_reader *r)
     int64_t again = find_twice(&r->nodes);
     if (again >= 0) {
         r->record = r->msh->nodes[again].record;
-        msh_fail(r, "node tag %lld stands twice", (long long)r->msh->nodes[again].tag);
+        msh_fail(r, "node tag %jd stands twice", r->msh->nodes[again].tag);
     }
 }
 
@@ -77,7 +77,7 @@ void msh_check_elements(struct msh_reader *r)
     int64_t again = find_twice(&r->elements);
     if (again >= 0) {
         r->record = 0;
-        msh_fail(r, "element tag %lld stands twice", (long long)r->msh->elements[again].tag);
+        msh_fail(r, "element tag %jd stands twice", r->msh->elements[again].tag);
     }
 }
 
@@ -124,11 +124,10 @@ static void fail_corner(struct msh_reader *r, const struct msh_element *element,
         }
     }
     if (element->tag != MSH_NO_TAG) {
-        msh_fail(r, "element %lld names the node %lld, which is not in the file", (long long)element->tag,
-                 (long long)node);
+        msh_fail(r, "element %jd names the node %jd, which is not in the file", element->tag, node);
     } else {
-        msh_fail(r, "the set or surface '%.*s' names the node %lld, which is not in the file", length, name,
-                 (long long)node);
+        msh_fail(r, "the set or surface '%.*s' names the node %jd, which is not in the file", length, name,
+                 node);
     }
 }
 

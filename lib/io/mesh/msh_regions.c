@@ -104,9 +104,9 @@ static enum status find_cells(struct mesh_draft *draft, bool is_cell[])
             is_cell[keys[i].element] = false;
         }
     }
-    return again == 0 ? STATUS_OK
-                      : mesh_add_note(draft, "cells in two physical groups, or there twice, taken once: %lld",
-                                      (long long)again);
+    return again == 0
+               ? STATUS_OK
+               : mesh_add_note(draft, "cells in two physical groups, or there twice, taken once: %jd", again);
 }
 
 static enum status check_wanted(const struct mesh_draft *draft, const struct names *wanted,
@@ -151,8 +151,8 @@ static enum status name_regions(struct mesh_draft *draft, const int64_t cells_of
     }
     RETURN_IF_ERROR(check_wanted(draft, &wanted, &present));
     if (cells_of[msh->group_count] > 0 && regions->count > 1) {
-        RETURN_IF_ERROR(mesh_add_note(draft, "cells in no physical group, region '%s': %lld", unnamed,
-                                      (long long)cells_of[msh->group_count]));
+        RETURN_IF_ERROR(mesh_add_note(draft, "cells in no physical group, region '%s': %jd", unnamed,
+                                      cells_of[msh->group_count]));
     }
     return STATUS_OK;
 }

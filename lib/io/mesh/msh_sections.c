@@ -78,7 +78,7 @@ static void read_physicals(struct msh_reader *r, int dim, struct msh_entity enti
 {
     int64_t count = msh_count(r, "physical groups", 2, 4);
     if (count > MOST_GROUPS) {
-        msh_fail(r, "%lld physical groups are more than %d", (long long)count, MOST_GROUPS);
+        msh_fail(r, "%jd physical groups are more than %d", count, MOST_GROUPS);
     }
     for (int64_t i = 0; r->status == STATUS_OK && (i < count || i == 0); i++) {
         int64_t tag = count > 0 ? msh_int(r, "physical groups", -MSH_LARGEST_TAG, MSH_LARGEST_TAG) : 0;
@@ -212,7 +212,7 @@ static void read_node_head(struct msh_reader *r, struct node_block *block, int64
     block->parameters = msh_int(r, "parametric", 0, 1) == 1 ? dim : 0;
     block->count = msh_count(r, "number of nodes", 8, 28);
     if (block->count > count - block->first) {
-        msh_fail(r, "more nodes than the %lld that the section's head says", (long long)count);
+        msh_fail(r, "more nodes than the %jd that the section's head says", count);
     }
 }
 
@@ -239,8 +239,7 @@ void msh_read_nodes(struct msh_reader *r)
     }
     if (block.first != count) {
         r->record = 0;
-        msh_fail(r, "%lld nodes, not the %lld that the section's head says", (long long)block.first,
-                 (long long)count);
+        msh_fail(r, "%jd nodes, not the %jd that the section's head says", block.first, count);
     }
     msh_check_nodes(r);
 }
@@ -294,8 +293,8 @@ static void read_type(struct msh_reader *r, struct block *block)
     block->number = msh_int(r, "type", 0, INT32_MAX);
     block->type = msh_type(block->number);
     if (block->type.name == NULL) {
-        msh_fail(r, "type %lld is no element of first or second order: mesh with order 1 (gmsh -order 1)",
-                 (long long)block->number);
+        msh_fail(r, "type %jd is no element of first or second order: mesh with order 1 (gmsh -order 1)",
+                 block->number);
     }
 }
 
@@ -307,16 +306,15 @@ static void read_block_head(struct msh_reader *r, struct block *block, int64_t l
         block->entity = msh_key(dim, tag);
         block->groups = find_entity(r, block->entity, &block->group_count);
         if (block->groups == NULL && r->entity_count > 0) {
-            msh_fail(r, "is on %s %lld, which is not in $Entities", msh_entity_kind((int)dim),
-                     (long long)tag);
+            msh_fail(r, "is on %s %jd, which is not in $Entities", msh_entity_kind((int)dim), tag);
         }
         read_type(r, block);
         block->count = msh_count(r, "number of elements", 4, 16);
         if (r->status == STATUS_OK && block->type.dim != dim) {
-            msh_fail(r, "a %s on an entity of dimension %lld", block->type.name, (long long)dim);
+            msh_fail(r, "a %s on an entity of dimension %jd", block->type.name, dim);
         }
         if (block->count > left) {
-            msh_fail(r, "more elements than the %lld that the section's head says", (long long)all);
+            msh_fail(r, "more elements than the %jd that the section's head says", all);
         }
     } else if (r->binary) {
         read_type(r, block);
@@ -387,8 +385,7 @@ void msh_read_elements(struct msh_reader *r)
     }
     if (found != count) {
         r->record = 0;
-        msh_fail(r, "%lld elements, not the %lld that the section's head says", (long long)found,
-                 (long long)count);
+        msh_fail(r, "%jd elements, not the %jd that the section's head says", found, count);
     }
     if (r->status == STATUS_OK) {
         msh_check_elements(r);

@@ -144,7 +144,7 @@ void vtk_fill_text(struct msh_reader *r, struct vtk_array *array, const char **a
         int64_t length;
         const char *word = input_word(at, end, ',', &length);
         if (word == NULL) {
-            msh_fail(r, "%s: only %lld of %lld numbers", array->name, (long long)i, (long long)array->count);
+            msh_fail(r, "%s: only %jd of %jd numbers", array->name, i, array->count);
         } else if (array->real != NULL) {
             array->real[i] = input_real(r, array->name, word, length);
         } else if (is_asked(r, array)) {
@@ -173,7 +173,7 @@ static const struct vtk_array *find_array(struct vtk_input *v, enum vtk_kind kin
     if (found == NULL) {
         msh_fail(v->r, "no %s: the file is truncated, or has no grid", what);
     } else if (count >= 0 && found->count != count) {
-        msh_fail(v->r, "%s: %lld numbers, not %lld", what, (long long)found->count, (long long)count);
+        msh_fail(v->r, "%s: %jd numbers, not %jd", what, found->count, count);
     }
     return v->r->status == STATUS_OK ? found : NULL;
 }
@@ -184,7 +184,7 @@ static void add_nodes(struct vtk_input *v)
     for (int64_t n = 0; x != NULL && v->r->status == STATUS_OK && n < v->point_count; n++) {
         for (int k = 0; k < 3; k++) {
             if (!isfinite(x->real[3 * n + k])) {
-                msh_fail(v->r, "point %lld: a coordinate is not finite", (long long)n);
+                msh_fail(v->r, "point %jd: a coordinate is not finite", n);
             }
         }
         msh_add_node(v->r, n, &x->real[3 * n]);
@@ -220,11 +220,10 @@ static void add_cell(struct vtk_input *v, int64_t c, int64_t number, int64_t cou
     int64_t node[MSH_MOST_NODES];
     int type = find_type(number, count);
     if (type == 0) {
-        msh_fail(
-            v->r,
-            "cell %lld: type %lld of VTK with %lld points is no element of first or second order that is "
-            "read: make simplices of them (ParaView's filter Tetrahedralize)",
-            (long long)c, (long long)number, (long long)count);
+        msh_fail(v->r,
+                 "cell %jd: type %jd of VTK with %jd points is no element of first or second order that is "
+                 "read: make simplices of them (ParaView's filter Tetrahedralize)",
+                 c, number, count);
         return;
     }
     memcpy(node, nodes, (size_t)count * sizeof *nodes);
@@ -246,8 +245,8 @@ static void add_cells(struct vtk_input *v)
     int64_t first = 0;
     for (int64_t c = 0; r->status == STATUS_OK && c < v->cell_count; c++) {
         if (end->whole[c] < first || end->whole[c] > connectivity->count) {
-            msh_fail(r, "cell %lld: its offset %lld is not within [%lld, %lld]", (long long)c,
-                     (long long)end->whole[c], (long long)first, (long long)connectivity->count);
+            msh_fail(r, "cell %jd: its offset %jd is not within [%jd, %jd]", c, end->whole[c], first,
+                     connectivity->count);
             return;
         }
         add_cell(v, c, type->whole[c], end->whole[c] - first, &connectivity->whole[first]);
@@ -324,8 +323,8 @@ static const struct vtk_array *find_regions(struct vtk_input *v)
 static void name_region(const struct vtk_input *v, const struct vtk_array *array, int64_t value, int dim,
                         int most, char name[], size_t size)
 {
-    snprintf(name, size, "%s_%s%s%lld", array->name, dim < most ? msh_entity_kind(dim) : "",
-             dim < most ? "_" : "", (long long)value);
+    snprintf(name, size, "%s_%s%s%jd", array->name, dim < most ? msh_entity_kind(dim) : "",
+             dim < most ? "_" : "", value);
     for (int64_t i = 0; i < v->count && strcmp(array->name, "cells.region") == 0; i++) {
         const struct vtk_array *field = &v->arrays[i];
         if (field->kind == VTK_OF_FIELD && field->count == 1 && field->whole[0] == value) {
@@ -362,8 +361,8 @@ static void add_regions(struct vtk_input *v, const struct vtk_array *array)
     struct msh_reader *r = v->r;
     SCRATCH int64_t *value = NULL, *key = NULL;
     if (array->count != v->cell_count) {
-        msh_fail(r, "%s: %lld numbers, not one for each of %lld cells", array->name, (long long)array->count,
-                 (long long)v->cell_count);
+        msh_fail(r, "%s: %jd numbers, not one for each of %jd cells", array->name, array->count,
+                 v->cell_count);
     }
     MSH_NEW(r, &value, v->cell_count);
     MSH_NEW(r, &key, 4 * v->cell_count);
@@ -391,8 +390,8 @@ static void add_sets(struct vtk_input *v)
         const char *name = strchr(array->name, '.') + 1;
         int64_t key = input_add_group(v->r, 0, name, (int64_t)strlen(name));
         if (array->count != v->point_count) {
-            msh_fail(v->r, "%s: %lld numbers, not one for each of %lld points", array->name,
-                     (long long)array->count, (long long)v->point_count);
+            msh_fail(v->r, "%s: %jd numbers, not one for each of %jd points", array->name, array->count,
+                     v->point_count);
         }
         for (int64_t n = 0; v->r->status == STATUS_OK && n < v->point_count; n++) {
             if (array->whole[n] != 0) {

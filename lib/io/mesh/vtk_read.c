@@ -95,7 +95,7 @@ static void skip_texts(struct legacy *l, int64_t count)
         }
         if (l->binary ? width == 0 || r->end - r->at < width || size > (uint64_t)(r->end - r->at - width)
                       : !msh_next_line(r, &at, &end)) {
-            msh_fail(r, "only %lld of %lld texts", (long long)i, (long long)count);
+            msh_fail(r, "only %jd of %jd texts", i, count);
         } else if (l->binary) {
             r->at += width + (int64_t)size;
         }
@@ -110,8 +110,7 @@ static struct vtk_array *read_numbers(struct legacy *l, const struct vtk_array *
     struct vtk_array *added = NULL;
     int64_t left = r->end - r->at, size = type->size == 0 ? 1 : l->binary ? type->size : 2, length;
     if (r->status != STATUS_OK || count > (left + !l->binary) / size) {
-        msh_fail(r, "%lld numbers cannot be in the %lld bytes that are left", (long long)count,
-                 (long long)left);
+        msh_fail(r, "%jd numbers cannot be in the %jd bytes that are left", count, left);
         return NULL;
     }
     if (vtk_is_wanted(&l->v, array, type)) {
@@ -133,7 +132,7 @@ static struct vtk_array *read_numbers(struct legacy *l, const struct vtk_array *
     } else {
         for (int64_t i = 0; r->status == STATUS_OK && i < count; i++) {
             if (input_word(&r->at, r->end, ',', &length) == NULL) {
-                msh_fail(r, "%s: only %lld of %lld numbers", array->name, (long long)i, (long long)count);
+                msh_fail(r, "%s: only %jd of %jd numbers", array->name, i, count);
             }
         }
     }
@@ -166,7 +165,7 @@ static void split_cells(struct legacy *l)
     for (int64_t c = 0; r->status == STATUS_OK && c < l->v.cell_count; c++) {
         int64_t left = l->v.arrays[place].count - from - 1, count = left >= 0 ? list[from++] : -1;
         if (count < 0 || count > left) {
-            msh_fail(r, "cell %lld: more points than there are numbers", (long long)c);
+            msh_fail(r, "cell %jd: more points than there are numbers", c);
             return;
         }
         memmove(&list[to], &list[from], (size_t)count * sizeof *list);
@@ -175,8 +174,7 @@ static void split_cells(struct legacy *l)
         end->whole[c] = to;
     }
     if (from < l->v.arrays[place].count) {
-        msh_fail(r, "%lld numbers, where %lld cells take %lld", (long long)l->v.arrays[place].count,
-                 (long long)l->v.cell_count, (long long)from);
+        msh_fail(r, "%jd numbers, where %jd cells take %jd", l->v.arrays[place].count, l->v.cell_count, from);
     }
     l->v.arrays[place].count = to;
 }
@@ -187,7 +185,7 @@ static void read_lists(struct legacy *l, int64_t count, int64_t size)
     struct vtk_array *offsets = read_list(l, VTK_OFFSETS, "OFFSETS", count);
     if (offsets != NULL && offsets->count > 0) { /* without the first, which is 0 */
         if (offsets->whole[0] != 0) {
-            msh_fail(l->v.r, "OFFSETS begin with %lld, not with 0", (long long)offsets->whole[0]);
+            msh_fail(l->v.r, "OFFSETS begin with %jd, not with 0", offsets->whole[0]);
         }
         offsets->count--;
         memmove(offsets->whole, offsets->whole + 1, (size_t)offsets->count * sizeof *offsets->whole);
@@ -211,7 +209,7 @@ static void read_cells(struct legacy *l, const char *at, const char *end)
     }
     l->v.cell_count = count;
     if (count > size) {
-        msh_fail(r, "%lld cells cannot have %lld numbers", (long long)count, (long long)size);
+        msh_fail(r, "%jd cells cannot have %jd numbers", count, size);
     }
     if (read_numbers(l, &array, vtk_find_type("int"), size) != NULL) {
         split_cells(l);
@@ -228,8 +226,7 @@ static void read_array(struct legacy *l, const char *name, int64_t components, i
     snprintf(array.name, sizeof array.name, "%s", name);
     decode_name(array.name);
     if (__builtin_mul_overflow(components, tuples, &count)) {
-        msh_fail(l->v.r, "%s: %lld tuples of %lld numbers are too many", name, (long long)tuples,
-                 (long long)components);
+        msh_fail(l->v.r, "%s: %jd tuples of %jd numbers are too many", name, tuples, components);
     } else if (type != NULL) {
         (void)read_numbers(l, &array, type, count);
     }
@@ -253,7 +250,7 @@ static void read_field(struct legacy *l, const char *at, const char *end)
         }
     }
     if (i < count) {
-        msh_fail(r, "FIELD has %lld of %lld arrays: the file is truncated", (long long)i, (long long)count);
+        msh_fail(r, "FIELD has %jd of %jd arrays: the file is truncated", i, count);
     }
 }
 

@@ -50,7 +50,7 @@ static char *read_bytes(struct msh_reader *r, const struct vtu_source *source, i
     const char *at = source->at;
     int64_t left = source->end - at, got = 0;
     if (size > (source->base64 ? left / 4 * 3 : left)) {
-        msh_fail(r, "%lld bytes cannot be in the %lld that are left", (long long)size, (long long)left);
+        msh_fail(r, "%jd bytes cannot be in the %jd that are left", size, left);
         return NULL;
     }
     MSH_NEW(r, &bytes, size + 3);
@@ -90,7 +90,7 @@ static char *read_plain(struct msh_reader *r, struct vtu_source *source, int64_t
     SCRATCH char *head = read_bytes(r, source, source->word);
     *size = head != NULL ? head_word(source, head, 0) : 0;
     if (*size > source->end - source->at) {
-        msh_fail(r, "%lld bytes cannot be in what is left of the file", (long long)*size);
+        msh_fail(r, "%jd bytes cannot be in what is left of the file", *size);
     }
     char *bytes = r->status == STATUS_OK ? read_bytes(r, source, source->word + *size) : NULL;
     if (bytes != NULL) {
@@ -118,8 +118,8 @@ static void read_blocks(struct msh_reader *r, const struct vtu_source *source, s
     blocks->size = head_word(source, first, 1);
     blocks->last = head_word(source, first, 2);
     if (blocks->count > left / source->word || blocks->last > blocks->size) {
-        msh_fail(r, "%lld blocks of %lld bytes cannot be in what is left of the file",
-                 (long long)blocks->count, (long long)blocks->size);
+        msh_fail(r, "%jd blocks of %jd bytes cannot be in what is left of the file", blocks->count,
+                 blocks->size);
         return;
     }
     blocks->head = read_bytes(r, source, (3 + blocks->count) * source->word);
@@ -143,8 +143,8 @@ static int64_t check_claim(struct msh_reader *r, const struct blocks *blocks, in
     bool is_short = blocks->count > 0 && blocks->last > 0;
     if (__builtin_mul_overflow(blocks->count - is_short, blocks->size, &size) ||
         __builtin_add_overflow(size, is_short ? blocks->last : 0, &size) || size > most) {
-        msh_fail(r, "%lld blocks of %lld bytes are more than the %lld that its numbers take",
-                 (long long)blocks->count, (long long)blocks->size, (long long)most);
+        msh_fail(r, "%jd blocks of %jd bytes are more than the %jd that its numbers take", blocks->count,
+                 blocks->size, most);
     } else if (size / MOST_RATIO > blocks->packed) {
         fail_damaged(r);
     }

@@ -105,7 +105,7 @@ static void begin_array(struct vtu *u, const char **attributes)
     if (u->at.type == NULL && u->at.array.kind >= VTK_POINTS && u->at.array.kind <= VTK_TYPES) {
         msh_fail(r, "%s: numbers of type '%s' are not read", u->at.array.name, type != NULL ? type : "");
     } else if (u->at.array.kind == VTK_POINTS && u->at.array.components != 3) {
-        msh_fail(r, "points of %lld coordinates, not 3", (long long)u->at.array.components);
+        msh_fail(r, "points of %jd coordinates, not 3", u->at.array.components);
     } else if (u->at.type != NULL &&
                (u->at.array.kind == VTK_OTHER || !vtk_is_wanted(&u->v, &u->at.array, u->at.type))) {
         u->at.type = NULL;
@@ -155,8 +155,7 @@ static void read_binary(struct vtu *u, struct vtu_source *source)
     }
     int64_t count = u->at.expected < 0 ? size / u->at.type->size : u->at.expected;
     if (count > size / u->at.type->size || count * u->at.type->size != size) {
-        msh_fail(r, "%s: %lld bytes, not %lld numbers of %d", u->at.array.name, (long long)size,
-                 (long long)count, u->at.type->size);
+        msh_fail(r, "%s: %jd bytes, not %jd numbers of %d", u->at.array.name, size, count, u->at.type->size);
     }
     struct vtk_array *array = vtk_add(&u->v, &u->at.array, count);
     if (array != NULL) {
@@ -173,8 +172,7 @@ static void read_text(struct vtu *u, const char *text, const char *end)
         count++;
     }
     if (u->at.expected >= 0 && count != u->at.expected) {
-        msh_fail(r, "%s: %lld numbers, not %lld", u->at.array.name, (long long)count,
-                 (long long)u->at.expected);
+        msh_fail(r, "%s: %jd numbers, not %jd", u->at.array.name, count, u->at.expected);
     }
     struct vtk_array *array = vtk_add(&u->v, &u->at.array, count);
     if (array != NULL) {
@@ -223,8 +221,8 @@ static void read_appended(struct vtu *u)
     for (int64_t i = 0; r->status == STATUS_OK && i < u->appended_count; i++) {
         u->at = u->appended[i];
         if (u->at.offset > r->end - data - 1) {
-            msh_fail(r, "%s: its offset %lld is behind the end of the file: it is truncated",
-                     u->at.array.name, (long long)u->at.offset);
+            msh_fail(r, "%s: its offset %jd is behind the end of the file: it is truncated", u->at.array.name,
+                     u->at.offset);
             break;
         }
         struct vtu_source source = {data + 1 + u->at.offset, r->end,  base64, u->swap,

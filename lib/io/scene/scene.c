@@ -28,8 +28,8 @@ static enum status add_item(const struct place *place, const struct scene_kind *
     ++*count;
     const struct ini_section *section = place->section;
     char *where;
-    RETURN_IF_ERROR(place_print(place, &where, "%s:%lld: [%s %s]", scene->path, (long long)section->line,
-                                section->kind, section->name));
+    RETURN_IF_ERROR(place_print(place, &where, "%s:%jd: [%s %s]", scene->path, section->line, section->kind,
+                                section->name));
     const struct scene_label label = {.name = section->name, .where = where};
     memcpy(item, &label, sizeof label);
     *added = item;

@@ -32,8 +32,7 @@ void ini_trim(char *text)
 
 static enum status fail_line(struct reading *reading, const char *what)
 {
-    return fail(reading->error, STATUS_INPUT, "%s:%lld: %s", reading->file->path, (long long)reading->line,
-                what);
+    return fail(reading->error, STATUS_INPUT, "%s:%jd: %s", reading->file->path, reading->line, what);
 }
 
 static char *content(char *line)
@@ -73,9 +72,8 @@ static enum status add_section(struct reading *reading, char *header)
     for (int64_t s = 0; s < file->section_count; s++) {
         const struct ini_section *other = &file->sections[s];
         if (strcmp(other->kind, kind) == 0 && strcmp(other->name, name) == 0) {
-            return fail(reading->error, STATUS_INPUT, "%s:%lld: [%s%s%s]: already in line %lld: join the two",
-                        file->path, (long long)reading->line, kind, *name != '\0' ? " " : "", name,
-                        (long long)other->line);
+            return fail(reading->error, STATUS_INPUT, "%s:%jd: [%s%s%s]: already in line %jd: join the two",
+                        file->path, reading->line, kind, *name != '\0' ? " " : "", name, other->line);
         }
     }
     RETURN_IF_ERROR(RESIZE_ARRAY(&file->sections, file->section_count + 1, reading->error));
@@ -103,12 +101,11 @@ static enum status add_entry(struct reading *reading, char *key)
     struct ini_section *section = &file->sections[file->section_count - 1];
     const struct ini_entry *other = ini_find(section, key);
     if (other != NULL) {
-        snprintf(what, sizeof what, "already in line %lld", (long long)other->line);
+        snprintf(what, sizeof what, "already in line %jd", other->line);
     }
     if (other != NULL || *value == '\0') {
-        return fail(reading->error, STATUS_INPUT, "%s:%lld: [%s%s%s]: %s: %s", file->path,
-                    (long long)reading->line, section->kind, *section->name ? " " : "", section->name, key,
-                    what);
+        return fail(reading->error, STATUS_INPUT, "%s:%jd: [%s%s%s]: %s: %s", file->path, reading->line,
+                    section->kind, *section->name ? " " : "", section->name, key, what);
     }
     RETURN_IF_ERROR(RESIZE_ARRAY(&section->entries, section->entry_count + 1, reading->error));
     section->entries[section->entry_count++] = (struct ini_entry){key, value, reading->line};

@@ -16,8 +16,8 @@ static enum status fail_at(const struct place *place, const char *key, enum stat
 {
     const struct ini_section *section = place->section;
     const struct ini_entry *entry = key != NULL ? ini_find(section, key) : NULL;
-    return fail_in(place->error, status, "%s:%lld: [%s%s%s]", place->file->path,
-                   (long long)(entry != NULL ? entry->line : section->line), section->kind,
+    return fail_in(place->error, status, "%s:%jd: [%s%s%s]", place->file->path,
+                   (entry != NULL ? entry->line : section->line), section->kind,
                    section->name[0] != '\0' ? " " : "", section->name);
 }
 

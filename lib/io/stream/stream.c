@@ -136,8 +136,7 @@ enum status section_validate(const char *name, enum element_type type, int64_t r
     RETURN_IF_ERROR(attributes_validate(name, attributes, error));
     if (rows < 0 || cols < 1 || cols > COLUMN_LIMIT || __builtin_mul_overflow(rows, cols, &bytes) ||
         __builtin_mul_overflow(bytes, (int64_t)element_size(type), &bytes)) {
-        return fail(error, STATUS_INPUT, "%s: %lld rows of %lld columns are out of bounds", name,
-                    (long long)rows, (long long)cols);
+        return fail(error, STATUS_INPUT, "%s: %jd rows of %jd columns are out of bounds", name, rows, cols);
     }
     return STATUS_OK;
 }
@@ -169,8 +168,7 @@ enum status stream_need(const struct stream *stream, const char *name, enum elem
                     element_type_name((*section)->type), element_type_name(type), producer);
     }
     if (cols > 0 && (*section)->cols != cols) {
-        return fail(error, STATUS_INPUT, "%s: %lld columns, need %lld", name, (long long)(*section)->cols,
-                    (long long)cols);
+        return fail(error, STATUS_INPUT, "%s: %jd columns, need %jd", name, (*section)->cols, cols);
     }
     return STATUS_OK;
 }

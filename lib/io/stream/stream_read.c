@@ -221,8 +221,8 @@ static enum status read_binary(struct reader *reader, struct section *section, u
     size_t bytes = (size_t)count * element_size(section->type), held = (size_t)(input->end - input->at);
     reader->binary = true;
     if (offset % PAYLOAD_ALIGNMENT != 0) {
-        return fail(error, STATUS_INPUT, "%s: binary payload at offset %lld, not a multiple of %d: damaged",
-                    section->name, (long long)offset, PAYLOAD_ALIGNMENT);
+        return fail(error, STATUS_INPUT, "%s: binary payload at offset %jd, not a multiple of %d: damaged",
+                    section->name, offset, PAYLOAD_ALIGNMENT);
     }
     if (held < bytes) {
         return fail_short(section, (int64_t)(held / element_size(section->type)) / section->cols, error);
@@ -272,8 +272,8 @@ static enum status read_end(struct reader *reader, const char *line, size_t leng
         return fail(error, STATUS_INPUT, "the end line lacks the crc32= of a stream with binary sections");
     }
     if (count != reader->stream->section_count) {
-        return fail(error, STATUS_INPUT, "%lld sections, the end line says %lld",
-                    (long long)reader->stream->section_count, (long long)count);
+        return fail(error, STATUS_INPUT, "%jd sections, the end line says %jd", reader->stream->section_count,
+                    count);
     }
     if (has_crc) {
         frame_count(reader, line, (size_t)(behind - line));

@@ -99,8 +99,8 @@ size_t section_print(const struct section *section, int64_t index, char text[SEC
 
 enum status fail_short(const struct section *section, int64_t row, struct error *error)
 {
-    return fail(error, STATUS_INPUT, "%s: row %lld of %lld: cut short (did an earlier stage fail?)",
-                section->name, (long long)row, (long long)section->rows);
+    return fail(error, STATUS_INPUT, "%s: row %jd of %jd: cut short (did an earlier stage fail?)",
+                section->name, row, section->rows);
 }
 
 /* Parse the number at `at` into element `index` of the payload; returns the byte behind it, or NULL. */
@@ -137,23 +137,23 @@ static enum status fail_word(const struct input *input, const struct section *se
         if (word == input->end) {
             return fail_short(section, row, error);
         }
-        return fail(error, STATUS_INPUT, "%s: row %lld: %lld numbers instead of %lld", section->name,
-                    (long long)row, (long long)column, (long long)section->cols);
+        return fail(error, STATUS_INPUT, "%s: row %jd: %jd numbers instead of %jd", section->name, row,
+                    column, section->cols);
     }
     if (word[0] == '#') {
-        return fail(error, STATUS_INPUT, "%s: row %lld: a header line: fewer rows than the %lld announced",
-                    section->name, (long long)row, (long long)section->rows);
+        return fail(error, STATUS_INPUT, "%s: row %jd: a header line: fewer rows than the %jd announced",
+                    section->name, row, section->rows);
     }
     if (memchr(word, ',', (size_t)length) != NULL) {
-        return fail(error, STATUS_INPUT, "%s: row %lld: '%.*s': write a decimal point, not a comma",
-                    section->name, (long long)row, length, word);
+        return fail(error, STATUS_INPUT, "%s: row %jd: '%.*s': write a decimal point, not a comma",
+                    section->name, row, length, word);
     }
     if (memchr(word, '\r', (size_t)length) != NULL) {
-        return fail(error, STATUS_INPUT, "%s: row %lld: lines end in CR LF: remove them with tr -d '\\r'",
-                    section->name, (long long)row);
+        return fail(error, STATUS_INPUT, "%s: row %jd: lines end in CR LF: remove them with tr -d '\\r'",
+                    section->name, row);
     }
-    return fail(error, STATUS_INPUT, "%s: row %lld: '%.*s' is not a number of type %s", section->name,
-                (long long)row, length, word, text);
+    return fail(error, STATUS_INPUT, "%s: row %jd: '%.*s' is not a number of type %s", section->name, row,
+                length, word, text);
 }
 
 static void skip_blanks(struct input *input)
@@ -176,11 +176,10 @@ static enum status row_end(struct input *input, const struct section *section, i
         return STATUS_OK;
     }
     if (*input->at == '\r') {
-        return fail(error, STATUS_INPUT, "%s: row %lld: lines end in CR LF: remove them with tr -d '\\r'",
-                    section->name, (long long)row);
+        return fail(error, STATUS_INPUT, "%s: row %jd: lines end in CR LF: remove them with tr -d '\\r'",
+                    section->name, row);
     }
-    return fail(error, STATUS_INPUT, "%s: row %lld: more than %lld numbers", section->name, (long long)row,
-                (long long)section->cols);
+    return fail(error, STATUS_INPUT, "%s: row %jd: more than %jd numbers", section->name, row, section->cols);
 }
 
 static enum status text_row(struct input *input, const struct section *section, int64_t row,
@@ -213,8 +212,8 @@ enum status payload_read_text(struct input *input, struct section *section, stru
     for (int64_t blank = 0; blank < 2; blank++) {
         skip_blanks(input);
         if (input->at < input->end && *input->at != '\n' && *input->at != '\r') {
-            return fail(error, STATUS_INPUT, "%s: more than %lld rows, or not two blank lines behind them",
-                        section->name, (long long)section->rows);
+            return fail(error, STATUS_INPUT, "%s: more than %jd rows, or not two blank lines behind them",
+                        section->name, section->rows);
         }
         RETURN_IF_ERROR(row_end(input, section, section->rows, error));
     }

@@ -35,8 +35,8 @@ static enum status find_facets(struct group_body *body, const struct groups *nam
     RETURN_IF_ERROR(faces_find(&body->boundary, named->count, named->node, found, error));
     for (int64_t i = 0; i < named->count; i++) {
         if (found[i] < 0) {
-            return fail(error, STATUS_INPUT, "facets: row %lld: no face of exactly one cell: run nodes again",
-                        (long long)i);
+            return fail(error, STATUS_INPUT, "facets: row %jd: no face of exactly one cell: run nodes again",
+                        i);
         }
         facet[i] = (int32_t)found[i];
         memcpy(&body->boundary.node[found[i] * dim], &named->node[i * dim],
@@ -249,9 +249,9 @@ static enum status write_regions(const struct group_body *body, struct stream *s
     const struct group_list *list = &body->groups[GROUP_REGION];
     if (list->count < body->cells.count) {
         return fail(error, STATUS_INPUT,
-                    "%lld of %lld cells belong to no region: give the rest a name, too (-r "
+                    "%jd of %jd cells belong to no region: give the rest a name, too (-r "
                     "'NAME=all without region:...')",
-                    (long long)(body->cells.count - list->count), (long long)body->cells.count);
+                    (body->cells.count - list->count), body->cells.count);
     }
     NEW_SCRATCH(int32_t, region, body->cells.count, error);
     for (int64_t i = 0; i < list->count; i++) {

@@ -269,10 +269,9 @@ void note_image_outside(const struct tool *tool, const struct image *image, cons
         outside += within ? 0 : 1;
     }
     if (outside > 0) {
-        tool_note(
-            tool,
-            "%lld of %lld nodes of the body lie more than half a voxel outside of the image: it shows a "
-            "part of the body, or another unit or direction of an axis",
-            (long long)outside, (long long)cells->node_count);
+        tool_note(tool,
+                  "%jd of %jd nodes of the body lie more than half a voxel outside of the image: it shows a "
+                  "part of the body, or another unit or direction of an axis",
+                  outside, cells->node_count);
     }
 }

@@ -24,7 +24,7 @@ enum status tissue_read(const char *path, struct tissue *tissue, struct error *e
         if (status == STATUS_OK && r > 0 && !(law->values[3 * r] > law->values[3 * (r - 1)])) {
             status = fail(error, STATUS_INPUT, "the values of the image (first column) must ascend");
         }
-        RETURN_IF_ERROR(fail_in(error, status, "%s: line %lld", path, (long long)law->line[r]));
+        RETURN_IF_ERROR(fail_in(error, status, "%s: line %jd", path, law->line[r]));
     }
     return STATUS_OK;
 }
