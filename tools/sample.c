@@ -62,7 +62,7 @@ static const char usage[] =
 #include "images/tissue.h"
 #include "stages/views.h"
 
-#include "base/axis.h"
+#include "base/eigen.h"
 #include "base/box.h"
 
 #include <float.h>

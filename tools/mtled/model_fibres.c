@@ -1,7 +1,7 @@
 #include "mtled/model.h"
 
 #include "approx/field/scattered_fit.h"
-#include "base/axis.h"
+#include "base/eigen.h"
 #include "base/vector.h"
 #include "io/files/table.h"
 #include "stages/views.h"
