@@ -1,5 +1,5 @@
-/* Unstructured grids of VTK: shared by vtk_read.c, vtu_read.c, vtu_data.c and vtk_input.c; private to
- * lib/io. The readers fill a struct vtk_input, vtk_build makes nodes, elements and groups of it.
+/* Unstructured grids of VTK: shared by vtk_read.c, vtu_read.c, vtu_data.c and vtk_input.c;
+ * private to lib/io. The readers fill a struct vtk_input, vtk_build makes nodes, elements and groups of it.
  */
 #pragma once
 
