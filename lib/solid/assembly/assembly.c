@@ -178,7 +178,9 @@ enum status assembly_held_faces(const struct assembly *input, int least, bool **
             NEW_SCRATCH(int64_t, face, set->count, error);
             RETURN_IF_ERROR(faces_find(&input->boundary, set->count, set->facet, face, error));
             for (int64_t f = 0; f < set->count; f++) {
-                (*held)[face[f]] = true; /* found: facets of a stream are on the boundary */
+                if (face[f] >= 0) { /* else the condition's averages are an error */
+                    (*held)[face[f]] = true;
+                }
             }
         }
     }
