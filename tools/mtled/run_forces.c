@@ -65,9 +65,7 @@ static void add_conditions(const struct run *run, struct totals *totals)
         for (int a = 0; a < dim; a++) {
             force[a] = pull * penalties->direction[r * dim + a];
         }
-        if (penalties->section[r] >= 0) {
-            add_force(run, &average, force, penalties->section[r], totals);
-        }
+        add_force(run, &average, force, penalties->section[r], totals);
     }
 }
 

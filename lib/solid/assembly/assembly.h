@@ -84,7 +84,7 @@ struct assembly {
         *cell_side; /* of each cell: its side of the interfaces at which supports stop; NULL: none */
     const struct ranks *ranks; /* processes that compute the body together; NULL: one */
 
-    struct material_list materials; /* the caller's to free */
+    struct material_list materials; /* the caller's to free; assembly adds softer ones, once */
     bool pointwise_volume;          /* no nodal volumes */
 
     struct load_curve *curves; /* curve_count; taken over by the system */
@@ -121,8 +121,9 @@ MUST_CHECK enum status assembly_build(struct assembly *input, struct solid_syste
                                       struct error *error);
 
 /* Steps of assembly_build, in their own files: displacements, measured points, loads of a body that is built,
- * contacts, supports with membranes, and what smoothed cells at junctions of prescribed and free boundary do
- * not have of their energy. */
+ * contacts, supports with membranes, and the reduced moduli of smoothed cells at junctions of prescribed and
+ * free boundary.
+ */
 MUST_CHECK enum status assembly_add_conditions(const struct assembly *input, struct solid_system *system,
                                                struct error *note, struct error *error);
 MUST_CHECK enum status assembly_add_points(const struct assembly *input, struct solid_system *system,
@@ -133,8 +134,8 @@ MUST_CHECK enum status assembly_add_contacts(const struct assembly *input, struc
                                              struct error *error);
 MUST_CHECK enum status assembly_add_supports(const struct assembly *input, struct solid_system *system,
                                              struct error *error);
-MUST_CHECK enum status assembly_add_junctions(const struct assembly *input, struct solid_system *system,
-                                              struct error *error);
+MUST_CHECK enum status assembly_soften_junctions(const struct assembly *input, struct material_list *list,
+                                                 struct error *error);
 
 /* (*at_edge)[node_count], to be freed: the nodes at edges between clamped and free sides, and at re-entrant
  * edges (2D: corners); NULL: none. */
@@ -145,8 +146,8 @@ bool assembly_has_gravity(const struct assembly *input);
 /* Whether conditions on facets prescribe boundary averages, and not values at nodes. */
 bool assembly_holds_averages(const struct assembly *input);
 
-/* (*held)[boundary.count], to be freed: whether the face is a facet of a condition that prescribes at least
- * `least` directions. */
+/* (*held)[boundary.count], to be freed: whether all nodes of the face belong to facets of one condition that
+ * prescribes at least `least` directions. */
 MUST_CHECK enum status assembly_held_faces(const struct assembly *input, int least, bool **held,
                                            struct error *error);
 

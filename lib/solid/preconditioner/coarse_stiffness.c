@@ -8,7 +8,6 @@
 #include "base/dense.h"
 #include "base/memory.h"
 
-#include <math.h>
 #include <string.h>
 
 enum { NODES_FOR_THREAD = 200 }; /* see chunks_of */
@@ -68,7 +67,7 @@ static void add_springs(struct preconditioner *p, const struct constraint_rows *
         struct average average = constraint_rows_average(rows, r);
         coarse_rows_clear(&p->rows);
         coarse_rows_add_average(&p->rows, &average, 1.0, 1, rows->direction + r * p->dim);
-        coarse_rows_square(&p->rows, 0, stiffness != NULL ? fmax(stiffness[r], 0.0) : usual, p->body);
+        coarse_rows_square(&p->rows, 0, stiffness != NULL ? stiffness[r] : usual, p->body);
     }
 }
 

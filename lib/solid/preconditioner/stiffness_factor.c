@@ -4,7 +4,6 @@
 #include "solid/preconditioner/block_row.h"
 #include "solid/system/system.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -172,8 +171,7 @@ static void add_squares(const struct constraint_rows *rows, const double *stiffn
         for (int64_t r = rows->first[l]; r < rows->first[l + 1]; r++) {
             const double *along = rows->direction + r * dim;
             for (int v = 0; v < dim * dim; v++) {
-                sum[v] +=
-                    (stiffness != NULL ? fmax(stiffness[r], 0.0) : usual) * along[v / dim] * along[v % dim];
+                sum[v] += (stiffness != NULL ? stiffness[r] : usual) * along[v / dim] * along[v % dim];
             }
         }
         for (int64_t i = 0; i < average.length * average.length; i++) {

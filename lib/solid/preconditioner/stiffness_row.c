@@ -6,8 +6,6 @@
 #include "base/vector.h"
 #include "solid/system/system.h"
 
-#include <math.h>
-
 /* Four numbers, which fit into one register of processors with AVX2. */
 typedef double four __attribute__((vector_size(32), aligned(8), may_alias));
 
@@ -208,7 +206,7 @@ static void add_squares(const struct stiffness_rows *rows, const struct constrai
             for (int64_t r = squares->first[list]; r < squares->first[list + 1] && to >= 0; r++) {
                 const double *along = squares->direction + r * dim;
                 double factor =
-                    (stiffness != NULL ? fmax(stiffness[r], 0.0) : usual) * lists->value[i] * squares->phi[e];
+                    (stiffness != NULL ? stiffness[r] : usual) * lists->value[i] * squares->phi[e];
                 for (int64_t v = 0; v < dim * dim; v++) {
                     block[to * dim * dim + v] += factor * along[v / dim] * along[v % dim];
                 }

@@ -351,7 +351,7 @@ static void add_penalties_to_bound(const struct solid_system *system, double *ma
     }
     for (int64_t r = 0; r < system->penalties.count; r++) {
         struct average average = constraint_rows_average(&system->penalties, r);
-        add_to_bound(&average, fmax(system->penalty_stiffness[r], 0.0), mass);
+        add_to_bound(&average, system->penalty_stiffness[r], mass);
     }
 }
 

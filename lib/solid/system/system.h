@@ -72,10 +72,9 @@ struct solid_system {
      * the targets, so that a linear field stays exact. */
     struct constraint_rows penalties;
     struct constraint_nodes penalty_nodes; /* their transpose; with several processes for own nodes */
-    int64_t spring_count; /* the last penalties are springs of supports, junctions and measured points: they
-                             are not of a condition that is met exactly as well */
-    double *penalty_stiffness; /* penalties.count, N/m (2D: N/m2); negative: energy that is taken away, which
-                                  preconditioners leave out, so that they stay definite */
+    int64_t spring_count;      /* the last penalties are springs of supports, then those of measured points:
+                                  they are not of a condition that is met exactly as well */
+    double *penalty_stiffness; /* penalties.count, N/m (2D: N/m2) */
     double *penalty_unit;      /* penalties.count: stiffness by modulus, m (2D: 1); 0: it stays as it is */
     int32_t *penalty_volume;   /* penalties.count: the nodal volume at a penalty's node; -1: none */
     double *penalty_force;     /* penalties.count: scratch */
@@ -178,7 +177,7 @@ double system_penalty_energy(const struct solid_system *system, const double *u)
 double system_spring_energy(const struct solid_system *system, const double *u);
 
 /* Append a constraint penalty: the arguments of constraint_rows_add, the stiffness, N/m (2D: N/m2), and that
- * by the modulus, m (2D: 1), if it may become stiffer, or 0. `section` -1: it is no section's. */
+ * by the modulus, m (2D: 1), if it may become stiffer, or 0. */
 MUST_CHECK enum status system_append_penalty(struct solid_system *system, const struct average *average,
                                              const double *direction, double target, int32_t curve,
                                              int32_t section, int32_t node, double stiffness, double unit,

@@ -63,7 +63,7 @@ bool system_stiffen_penalties(struct solid_system *system)
         shear = fmax(shear, body->materials[m].shear_modulus);
     }
     for (int64_t r = 0; body->averaged && r < system->penalties.count; r++) {
-        if (system->penalty_volume[r] >= 0 && system->penalty_unit[r] > 0.0) {
+        if (system->penalty_volume[r] >= 0) {
             double p = pressure[system->penalty_volume[r]];
             double stiffness = by_square * p * p / shear * system->penalty_unit[r];
             stiffer = stiffer || stiffness > system->penalty_stiffness[r];
