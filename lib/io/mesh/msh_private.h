@@ -110,21 +110,20 @@ double msh_real(struct msh_reader *reader, const char *what);
 void msh_skip_space(struct msh_reader *reader);
 void msh_skip_line(struct msh_reader *reader);
 
-/* Allocate *pointer, an array of `count` zeros; a statement. */
-#define MSH_NEW(reader, pointer, count)                                                                      \
+/* Unless the reader has failed, its status becomes that of a call; a statement, as those below. */
+#define MSH_TRY(reader, call)                                                                                \
     do {                                                                                                     \
         if ((reader)->status == STATUS_OK) {                                                                 \
-            (reader)->status = NEW_ARRAY(pointer, count, (reader)->error);                                   \
+            (reader)->status = (call);                                                                       \
         }                                                                                                    \
     } while (0)
 
-/* Let *pointer, an array of *room elements, have room for `needed`; a statement. */
+/* Allocate *pointer, an array of `count` zeros. */
+#define MSH_NEW(reader, pointer, count) MSH_TRY(reader, NEW_ARRAY(pointer, count, (reader)->error))
+
+/* Let *pointer, an array of *room elements, have room for `needed`. */
 #define MSH_GROW(reader, pointer, needed, room)                                                              \
-    do {                                                                                                     \
-        if ((reader)->status == STATUS_OK) {                                                                 \
-            (reader)->status = GROW_ARRAY(pointer, needed, room, (reader)->error);                           \
-        }                                                                                                    \
-    } while (0)
+    MSH_TRY(reader, GROW_ARRAY(pointer, needed, room, (reader)->error))
 
 /* ---- msh_sections.c: the sections, from the line behind "$Name" to where "$EndName" should be ---- */
 
@@ -221,13 +220,8 @@ int64_t input_group(struct msh_reader *r, int dim, const char *text);
 /* Note what of the file is left out, each thing once. */
 void input_leave_out(struct msh_reader *r, const char *what);
 
-/* Append a note, printed; a statement. */
-#define input_note(r, ...)                                                                                   \
-    do {                                                                                                     \
-        if ((r)->status == STATUS_OK) {                                                                      \
-            (r)->status = names_print(&(r)->msh->notes, (r)->error, __VA_ARGS__);                            \
-        }                                                                                                    \
-    } while (0)
+/* Append a note, printed. */
+#define input_note(r, ...) MSH_TRY(r, names_print(&(r)->msh->notes, (r)->error, __VA_ARGS__))
 
 /* Read a deck of Abaqus or CalculiX; a model of FEBio; a file of VTK, in XML or legacy. */
 void inp_read(struct msh_reader *r);

@@ -1,4 +1,4 @@
-/* Unstructured grids of VTK: shared by vtk_read.c, vtu_read.c, vtu_data.c and vtk_input.c;
+/* Unstructured grids of VTK: shared by vtk_read.c, vtu_read.c, vtu_data.c, vtk_input.c and vtk_groups.c;
  * private to lib/io. The readers fill a struct vtk_input, vtk_build makes nodes, elements and groups of it.
  */
 #pragma once
@@ -65,6 +65,9 @@ struct vtu_source {
 
 /* The bytes of an array, uncompressed and out of base64, to be freed; NULL after a failure. (vtu_data.c) */
 char *vtu_bytes(struct msh_reader *r, struct vtu_source *source, int64_t *size);
+
+/* Group elements by the array of the regions, add those of sets: all cells are there. (vtk_groups.c) */
+void vtk_add_groups(struct vtk_input *v);
 
 /* Make the mesh; free the arrays. */
 void vtk_build(struct vtk_input *v);
