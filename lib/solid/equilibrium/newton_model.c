@@ -11,6 +11,9 @@
 enum { MOST_ITERATIONS = 100 }; /* of conjugate gradients; */
 enum { MOST_INNER = 4 };        /* augmentations of contacts in a step */
 enum { MOST_TURNS = 8 };        /* of the search along a direction */
+/* Corrections at a load in which the multipliers of contacts advance in any case; later they do where
+ * contacts give way. */
+enum { MOST_AUGMENTATIONS = 24 };
 /* What is left of the gradient's norm when the multipliers of contacts advance. */
 static const double inner_left = 0.3;
 /* The slope at the end of that search, by the one at its start: at most. */
@@ -203,7 +206,7 @@ static void continue_last(struct newton *n, double most)
 bool newton_solve_model(struct newton *n, double of_last, double share, double radius)
 {
     double before = 0.0, mark = 0.0;
-    int augmentations = n->corrections < NEWTON_MOST_AUGMENTATIONS || n->gives_way ? MOST_INNER : 0;
+    int augmentations = n->corrections < MOST_AUGMENTATIONS || n->gives_way ? MOST_INNER : 0;
     struct newton_lanczos lanczos = {0};
     begin_model(n);
     if (of_last > 0.0) {

@@ -67,9 +67,6 @@ enum { NEWTON_MOST_ITERATIONS = 500 }; /* of conjugate gradients */
 /* By the largest Rayleigh quotient, about 1: a smaller one is within the round-off of differences of forces.
  */
 #define NEWTON_LEAST_TOLD 1e-6
-/* Corrections at a load in which the multipliers of contacts advance in any case; later they do where
- * contacts give way. */
-enum { NEWTON_MOST_AUGMENTATIONS = 24 };
 
 /* Lanczos's matrix of M^-1 K, from conjugate gradients. */
 struct newton_lanczos {
