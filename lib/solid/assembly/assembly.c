@@ -202,7 +202,7 @@ enum status assembly_held_faces(const struct assembly *input, int least, bool **
 }
 
 enum status assembly_penalty_modulus(const struct assembly *input, const struct facet_set *set, double factor,
-                                     double *modulus, struct error *error)
+                                     double *modulus, double *wave, struct error *error)
 {
     NEW_SCRATCH(bool, behind, input->cells.count, error);
     NEW_SCRATCH(int64_t, face, set->count, error);
@@ -212,12 +212,13 @@ enum status assembly_penalty_modulus(const struct assembly *input, const struct 
             behind[input->boundary.cell[2 * face[f]]] = true;
         }
     }
-    *modulus = 0.0;
+    *modulus = *wave = 0.0;
     for (int64_t q = 0; q < input->point_count; q++) {
         if (behind[input->point_cell[q]]) {
             const struct material *material = &input->materials.items[input->materials.of_point[q]];
-            *modulus =
-                fmax(*modulus, fmin(factor * material->shear_modulus, material_wave_modulus(material)));
+            double of_waves = material_wave_modulus(material);
+            *wave = fmax(*wave, of_waves);
+            *modulus = fmax(*modulus, fmin(factor * material->shear_modulus, of_waves));
         }
     }
     return STATUS_OK;

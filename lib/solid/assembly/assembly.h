@@ -152,9 +152,11 @@ MUST_CHECK enum status assembly_held_faces(const struct assembly *input, int lea
                                            struct error *error);
 
 /* The modulus of penalties on facets, Pa: the P-wave modulus, but at most `factor` times the shear modulus,
- * so that it does not grow with the bulk modulus; the largest value in the cells behind the facets. */
+ * so that it does not grow with the bulk modulus; and the P-wave modulus: the largest values in the cells
+ * behind the facets. */
 MUST_CHECK enum status assembly_penalty_modulus(const struct assembly *input, const struct facet_set *set,
-                                                double factor, double *modulus, struct error *error);
+                                                double factor, double *modulus, double *wave,
+                                                struct error *error);
 
 /* field[node_count * dim] = u_h at the nodes. */
 void assembly_nodal_field(const struct assembly *input, const double *u, double *field);

@@ -154,7 +154,7 @@ static enum status add_penalties(struct prescription *p, struct error *error)
     const struct facet_set *set = &p->condition->facets;
     enum status status;
     struct boundary_averages points = {0};
-    double area = 0.0;
+    double area = 0.0, wave;
     TRY(boundary_points_build(&p->input->face_table, set, &points, error));
     for (int64_t a = 0; a < points.count; a++) {
         area += points.area[a];
@@ -162,7 +162,7 @@ static enum status add_penalties(struct prescription *p, struct error *error)
     area /= (double)set->count;
     p->penalties = true;
     p->layer = p->input->cells.dim == 2 ? area : sqrt(2.0 * area);
-    TRY(assembly_penalty_modulus(p->input, set, constraint_penalty_factor, &p->modulus, error));
+    TRY(assembly_penalty_modulus(p->input, set, constraint_penalty_factor, &p->modulus, &wave, error));
     for (int64_t a = 0; a < points.count; a++) {
         TRY(add_average(p, &points, a, error));
     }

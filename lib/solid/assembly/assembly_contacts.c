@@ -138,8 +138,7 @@ static enum status set_stiffness(const struct assembly *input, const struct cont
     double modulus, wave, least = INFINITY, largest = 0.0;
     const struct facet_set *sides[] = {&condition->facets, &condition->opposite};
     for (int i = 0; i < (condition->opposite.count > 0 ? 2 : 1); i++) {
-        RETURN_IF_ERROR(assembly_penalty_modulus(input, sides[i], penalty_factor, &modulus, error));
-        RETURN_IF_ERROR(assembly_penalty_modulus(input, sides[i], INFINITY, &wave, error));
+        RETURN_IF_ERROR(assembly_penalty_modulus(input, sides[i], penalty_factor, &modulus, &wave, error));
         largest = fmax(largest, modulus);
         least = fmin(least, wave);
     }
