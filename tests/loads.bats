@@ -65,7 +65,7 @@ near() { fieldcmp "--tol-$1" "$2" other.dat u.dat > /dev/null; }
 immersed() {
     local walls='xmin, xmax' top=ymax
     local level="0.05, $2" gravity='0, -9.81' box=0,0.1,0,0.1 count=13 # so many that the nodes' mean is the top's
-    [ "$1" = 2 ] || { walls="$walls, ymin, ymax" top=zmax level="0.05, 0.05, $2" gravity="0, 0, -9.81" box=$box,0,0.1 count=5; }
+    [ "$1" = 2 ] || { walls="$walls, ymin, ymax" top=zmax level="0.05, 0.05, $2" gravity="0, 0, -9.81" box=$box,0,0.1 count=11; }
     cloud -d "$1" -k jittered -n $count --box $box --jitter 0.1 | shapefn > table.mts 2> note
     {
         block quasi-static "gravity = $gravity" | sed "s/^dim = 2/dim = $1/"

@@ -33,12 +33,13 @@ static enum status list_vertices(const struct assembly *input, int32_t **vertex,
 
 static enum status build_body(struct assembly *input, struct solid_system *system, struct error *error)
 {
-    struct material_list *materials = &input->materials;
+    const struct material_list *materials = &input->materials;
     SCRATCH int32_t *vertex = NULL;
     SCRATCH double *coordinate = NULL;
     SCRATCH bool *at_edge = NULL;
+    SCRATCH int32_t *junction = NULL;
     if (input->smoothed && assembly_holds_averages(input)) {
-        RETURN_IF_ERROR(assembly_soften_junctions(input, materials, error));
+        RETURN_IF_ERROR(assembly_junction_cells(input, &junction, error));
         RETURN_IF_ERROR(assembly_edge_nodes(input, &at_edge, error));
     }
     if (!input->pointwise_volume) {
@@ -70,6 +71,7 @@ static enum status build_body(struct assembly *input, struct solid_system *syste
                               .group = materials->section,
                               .vertex = vertex,
                               .barycentric = coordinate,
+                              .junction = junction,
                               .at_edge = at_edge,
                               .smoothed = input->smoothed ? &smoothed : NULL,
                               .ranks = input->ranks};
@@ -168,34 +170,18 @@ bool assembly_holds_averages(const struct assembly *input)
     return !input->node_values && !input->direct;
 }
 
-/* Mark the faces of the boundary all of whose nodes are nodes of a set of facets. stamp[node] < number:
- * scratch. */
-static void mark_faces(const struct assembly *input, const struct facet_set *set, int64_t number,
-                       int64_t *stamp, bool *marked)
-{
-    const struct faces *faces = &input->boundary;
-    int dim = input->cells.dim;
-    for (int64_t k = 0; k < set->count * dim; k++) {
-        stamp[set->facet[k]] = number;
-    }
-    for (int64_t f = 0; f < faces->count && set->count > 0; f++) {
-        bool is_of_set = true;
-        for (int k = 0; k < dim; k++) {
-            is_of_set = is_of_set && stamp[faces->node[f * dim + k]] == number;
-        }
-        marked[f] = marked[f] || is_of_set;
-    }
-}
-
 enum status assembly_held_faces(const struct assembly *input, int least, bool **held, struct error *error)
 {
-    SCRATCH int64_t *stamp = NULL; /* of each node: the last set that contains it, from 1 on */
     RETURN_IF_ERROR(NEW_ARRAY(held, input->boundary.count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&stamp, input->cells.node_count, error));
     for (int64_t i = 0; i < input->condition_count; i++) {
         const struct condition *condition = &input->conditions[i];
+        const struct facet_set *set = &condition->facets;
         if (prescription_directions(condition, input->cells.dim) >= least) {
-            mark_faces(input, &condition->facets, i + 1, stamp, *held);
+            NEW_SCRATCH(int64_t, face, set->count, error);
+            RETURN_IF_ERROR(faces_find(&input->boundary, set->count, set->facet, face, error));
+            for (int64_t f = 0; f < set->count; f++) {
+                (*held)[face[f]] = true; /* found: facets of a stream are on the boundary */
+            }
         }
     }
     return STATUS_OK;

@@ -121,9 +121,7 @@ MUST_CHECK enum status assembly_build(struct assembly *input, struct solid_syste
                                       struct error *error);
 
 /* Steps of assembly_build, in their own files: displacements, measured points, loads of a body that is built,
- * contacts, supports with membranes, and the reduced moduli of smoothed cells at junctions of prescribed and
- * free boundary.
- */
+ * contacts, and supports with membranes. */
 MUST_CHECK enum status assembly_add_conditions(const struct assembly *input, struct solid_system *system,
                                                struct error *note, struct error *error);
 MUST_CHECK enum status assembly_add_points(const struct assembly *input, struct solid_system *system,
@@ -134,8 +132,11 @@ MUST_CHECK enum status assembly_add_contacts(const struct assembly *input, struc
                                              struct error *error);
 MUST_CHECK enum status assembly_add_supports(const struct assembly *input, struct solid_system *system,
                                              struct error *error);
-MUST_CHECK enum status assembly_soften_junctions(const struct assembly *input, struct material_list *list,
-                                                 struct error *error);
+
+/* (*part)[cells.count], to be freed: of cells that have a node on a junction of prescribed and free boundary
+ * within a smooth side the number of one of these nodes; -1: of others. */
+MUST_CHECK enum status assembly_junction_cells(const struct assembly *input, int32_t **part,
+                                               struct error *error);
 
 /* (*at_edge)[node_count], to be freed: the nodes at edges between clamped and free sides, and at re-entrant
  * edges (2D: corners); NULL: none. */
@@ -146,8 +147,8 @@ bool assembly_has_gravity(const struct assembly *input);
 /* Whether conditions on facets prescribe boundary averages, and not values at nodes. */
 bool assembly_holds_averages(const struct assembly *input);
 
-/* (*held)[boundary.count], to be freed: whether all nodes of the face belong to facets of one condition that
- * prescribes at least `least` directions. */
+/* (*held)[boundary.count], to be freed: whether the face is a facet of a condition that prescribes at least
+ * `least` directions. */
 MUST_CHECK enum status assembly_held_faces(const struct assembly *input, int least, bool **held,
                                            struct error *error);
 

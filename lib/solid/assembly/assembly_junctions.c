@@ -4,12 +4,6 @@
 
 #include <stdlib.h>
 
-/* Moduli of cells at smooth junctions, equal to those of others times this (energy correction: Egger, Ruede
- * and Wohlmuth 2014; lib/README.md). With .76, the force on a bonded punch on a strip equals that of a mesh
- * with fine cells at the ends of the punch, but the largest error, at the junctions, is larger. With .85,
- * which leaves a third of the error of the force, it just begins to grow. */
-static const double junction_stiffness = 0.85;
-
 /* (*junction)[node_count], to be freed: nodes of edges of these kinds, where faces with at least `least`
  * prescribed directions end. */
 static enum status find_junctions(const struct assembly *input, int kinds, int least, bool **junction,
@@ -22,54 +16,25 @@ static enum status find_junctions(const struct assembly *input, int kinds, int l
     return boundary_find_junctions(&input->face_table, kinds, held, constrained, *junction, error);
 }
 
-/* softer[cells.count]: cells that have a node on a smooth junction, and no prescribed facet. */
-static enum status mark_cells(const struct assembly *input, bool *softer, struct error *error)
+/* Of several nodes of a cell that which has the fewest cells so far. */
+enum status assembly_junction_cells(const struct assembly *input, int32_t **part, struct error *error)
 {
-    int corners = input->cells.dim + 1;
-    SCRATCH bool *held = NULL, *junction = NULL;
-    RETURN_IF_ERROR(assembly_held_faces(input, 1, &held, error));
+    const struct cells *cells = &input->cells;
+    int corners = cells->dim + 1;
+    SCRATCH bool *junction = NULL;
     RETURN_IF_ERROR(find_junctions(input, BOUNDARY_JUNCTION_SMOOTH, 1, &junction, error));
-    for (int64_t i = 0; i < input->cells.count * corners; i++) {
-        softer[i / corners] = softer[i / corners] || junction[input->cells.node[i]];
-    }
-    for (int64_t f = 0; f < input->boundary.count; f++) {
-        if (held[f]) {
-            softer[input->boundary.cell[2 * f]] = false;
+    NEW_SCRATCH(int32_t, size, cells->node_count, error);
+    RETURN_IF_ERROR(NEW_ARRAY(part, cells->count, error));
+    for (int64_t c = 0; c < cells->count; c++) {
+        int32_t least = -1;
+        for (int k = 0; k < corners; k++) {
+            int32_t node = cells->node[c * corners + k];
+            least = junction[node] && (least < 0 || size[node] < size[least]) ? node : least;
         }
-    }
-    return STATUS_OK;
-}
-
-/* Append the material m with the moduli of cells at smooth junctions. */
-static void add_softened(struct material_list *list, int32_t m)
-{
-    struct material *material = &list->items[list->count];
-    *material = list->items[m];
-    material->shear_modulus *= junction_stiffness;
-    material->bulk_modulus *= junction_stiffness;
-    list->section[list->count++] = list->section[m];
-}
-
-enum status assembly_soften_junctions(const struct assembly *input, struct material_list *list,
-                                      struct error *error)
-{
-    const int32_t *cell = input->point_cell;
-    SCRATCH int64_t *softened = NULL; /* of each material: the softened copy; 0: none yet */
-    RETURN_IF_ERROR(RESIZE_ARRAY(&list->items, 2 * list->count, error));
-    RETURN_IF_ERROR(RESIZE_ARRAY(&list->section, 2 * list->count, error));
-    NEW_SCRATCH(bool, softer, input->cells.count, error);
-    RETURN_IF_ERROR(NEW_ARRAY(&softened, list->count, error));
-    RETURN_IF_ERROR(mark_cells(input, softer, error));
-    for (int64_t q = 0; q < input->point_count; q++) {
-        int32_t m = list->of_point[q];
-        if (!softer[cell[q]]) {
-            continue;
+        (*part)[c] = least;
+        if (least >= 0) {
+            size[least]++;
         }
-        if (softened[m] == 0) {
-            softened[m] = list->count;
-            add_softened(list, m);
-        }
-        list->of_point[q] = (int32_t)softened[m];
     }
     return STATUS_OK;
 }

@@ -31,6 +31,7 @@ static int model_of(const struct body_input *input, int64_t point)
 static enum status order_all(const struct body_input *input, struct body *body, struct error *error)
 {
     SCRATCH int64_t *root = NULL;
+    SCRATCH double *kept = NULL;
     NEW_SCRATCH(int32_t, model, input->point_count, error);
     RETURN_IF_ERROR(NEW_ARRAY(&body->order, input->point_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&body->node_order, input->node_count, error));
@@ -42,7 +43,8 @@ static enum status order_all(const struct body_input *input, struct body *body, 
     if (body->smoothed) {
         RETURN_IF_ERROR(NEW_ARRAY(&root, input->point_count, error));
         RETURN_IF_ERROR(merged_cells_find(input, root, error));
-        RETURN_IF_ERROR(merged_cells_order(root, body, error));
+        RETURN_IF_ERROR(merged_cells_join(input, root, &kept, error));
+        RETURN_IF_ERROR(merged_cells_order(root, kept, body, error));
     }
     for (int64_t n = 0; n < input->node_count; n++) {
         body->node_order[n] = n;
@@ -83,12 +85,12 @@ static enum status copy_points(const struct body_input *input, struct body *body
     return prony_build(body, error);
 }
 
-/* Cut the ordered points into blocks of one law, merged cells together. */
+/* Cut the ordered points into blocks of one law, groups of cells together. */
 static enum status cut_blocks(const struct body_input *input, struct body *body, struct error *error)
 {
     int64_t most = points_of_block(body->dim);
     RETURN_IF_ERROR(
-        NEW_ARRAY(&body->blocks, body->point_count / (most - MERGED_MOST_CELLS) + 4 * law_count + 1, error));
+        NEW_ARRAY(&body->blocks, body->point_count / (most - GROUP_MOST_CELLS) + 4 * law_count + 1, error));
     for (int64_t q = 0; q < body->point_count;) {
         struct block *block = &body->blocks[body->block_count++];
         int model = model_of(input, body->order[q]);
@@ -97,7 +99,7 @@ static enum status cut_blocks(const struct body_input *input, struct body *body,
         block->neo_hookean = model == MATERIAL_NEO_HOOKEAN ||
                              (body->smoothed && model == MATERIAL_NEO_HOOKEAN + 2 * law_count);
         while (q < body->point_count && model_of(input, body->order[q]) == model) {
-            int64_t next = smoothed_cells_group_end(body, q);
+            int64_t next = body->cells.group != NULL ? body->cells.group_end[q] : q + 1;
             if (next - block->first_point > most) {
                 break;
             }

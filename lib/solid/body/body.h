@@ -34,7 +34,10 @@ struct body_input {
     /* For nodal volumes; NULL: the pointwise volumetric law throughout. */
     const int32_t *vertex;     /* point_count * (dim + 1): vertices of the background cell of each point */
     const double *barycentric; /* point_count * (dim + 1): its barycentric coordinates there, sum 1 */
-    const bool *at_edge;       /* node_count: nodes that own no nodal volume (nodal_volume.h); NULL: none */
+    const int32_t
+        *junction;       /* point_count: of cells at a junction of prescribed and free boundary a number of
+                            the part of the junction, >= 0; -1: of others (merged_cells.h); NULL: none */
+    const bool *at_edge; /* node_count: nodes that own no nodal volume (nodal_volume.h); NULL: none */
     const struct smoothed_cells_input *smoothed; /* the points are cells, in their order; NULL: any points */
     const struct ranks *ranks;                   /* processes that compute the body together; NULL: one */
 };

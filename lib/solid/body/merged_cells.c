@@ -76,17 +76,60 @@ enum status merged_cells_find(const struct body_input *input, int64_t *root, str
     return STATUS_OK;
 }
 
-enum status merged_cells_order(const int64_t *root, struct body *body, struct error *error)
+enum status merged_cells_join(const struct body_input *input, int64_t *root, double **kept,
+                              struct error *error)
+{
+    int32_t parts = 0;
+    int64_t cells = input->point_count;
+    SCRATCH int64_t *last = NULL; /* of each part of the junction: its last root, from 1 on; 0: none */
+    NEW_SCRATCH(int64_t, before, cells, error); /* of such a root: the one before it */
+    NEW_SCRATCH(int64_t, size, cells, error);
+    RETURN_IF_ERROR(NEW_ARRAY(kept, cells, error));
+    for (int64_t c = 0; c < cells; c++) {
+        size[root[c]]++;
+    }
+    for (int64_t c = 0; c < cells; c++) {
+        bool alone = size[root[c]] == 1;
+        (*kept)[c] = alone ? 1.0 : 0.0;
+        parts =
+            alone && input->junction != NULL && input->junction[c] >= parts ? input->junction[c] + 1 : parts;
+    }
+    RETURN_IF_ERROR(NEW_ARRAY(&last, parts, error));
+    for (int64_t c = 0; c < cells && parts > 0; c++) {
+        int32_t part = input->junction[c];
+        if (part < 0 || (*kept)[c] < 1.0) {
+            continue;
+        }
+        int64_t to = last[part];
+        while (to != 0 && (!are_alike(input, to - 1, c) || size[to - 1] == GROUP_MOST_CELLS)) {
+            to = before[to - 1];
+        }
+        if (to == 0) {
+            before[c] = last[part];
+            last[part] = c + 1;
+        } else {
+            root[c] = to - 1;
+            size[to - 1]++;
+            (*kept)[c] = (*kept)[to - 1] = JUNCTION_KEPT;
+        }
+    }
+    return STATUS_OK;
+}
+
+enum status merged_cells_order(const int64_t *root, const double *kept, struct body *body,
+                               struct error *error)
 {
     struct smoothed_cells *smoothed = &body->cells;
-    int64_t cells = body->point_count, at = 0;
+    int64_t cells = body->point_count, at = 0, grouped = 0;
     SCRATCH int64_t *first = NULL;
     for (int64_t c = 0; c < cells; c++) {
-        smoothed->merged_count += root[c] != c;
+        grouped += root[c] != c;
+        smoothed->merged_count += root[c] != c && kept[c] <= 0.0;
     }
-    if (smoothed->merged_count == 0) {
+    if (grouped == 0) {
         return STATUS_OK;
     }
+    RETURN_IF_ERROR(NEW_ARRAY(&smoothed->kept, cells, error));
     RETURN_IF_ERROR(NEW_ARRAY(&first, cells, error)); /* lists of the cells of each root; 0: none */
     NEW_SCRATCH(int64_t, next, cells, error);
     RETURN_IF_ERROR(NEW_ARRAY(&smoothed->group, cells, error));
@@ -97,15 +140,15 @@ enum status merged_cells_order(const int64_t *root, struct body *body, struct er
             first[root[c]] = c + 1;
         }
     }
-    int64_t kept = 0;
+    int64_t roots = 0;
     for (int64_t q = 0; q < cells; q++) { /* the roots in their order */
         int64_t c = body->order[q];
         if (root[c] == c) {
-            body->order[kept++] = c;
+            body->order[roots++] = c;
         }
     }
-    memmove(body->order + cells - kept, body->order, (size_t)kept * sizeof *body->order);
-    for (int64_t k = cells - kept; k < cells; k++) { /* each followed by the other cells of its group */
+    memmove(body->order + cells - roots, body->order, (size_t)roots * sizeof *body->order);
+    for (int64_t k = cells - roots; k < cells; k++) { /* each followed by the other cells of its group */
         int64_t c = body->order[k], begin = at;
         body->order[at++] = c;
         for (int64_t i = first[c]; i != 0; i = next[i - 1]) {
@@ -114,17 +157,19 @@ enum status merged_cells_order(const int64_t *root, struct body *body, struct er
         for (int64_t q = begin; q < at; q++) {
             smoothed->group[q] = (int32_t)begin;
             smoothed->group_end[q] = (int32_t)at;
+            smoothed->kept[q] = kept[c];
         }
     }
     return STATUS_OK;
 }
 
-/* Replace the rows of a group of cells by their mean, or by the shares w_i / W of their sum. */
+/* Replace the rows of a group of cells by what they keep and the rest of their mean, or by what they keep and
+ * the shares w_i / W of the rest of their sum. */
 static void average_rows(const struct body *body, const struct block *block, int64_t begin, int64_t end,
                          bool sum, block_rows rows)
 {
     const double *weight = body->weight;
-    double whole = 0.0;
+    double whole = 0.0, kept = body->cells.kept[begin];
     for (int64_t q = begin; q < end; q++) {
         whole += weight[q];
     }
@@ -133,9 +178,9 @@ static void average_rows(const struct body *body, const struct block *block, int
         for (int64_t q = begin; q < end; q++) {
             mean += (sum ? 1.0 : weight[q]) * row[q];
         }
-        mean /= whole;
+        mean *= (1.0 - kept) / whole;
         for (int64_t q = begin; q < end; q++) {
-            row[q] = (sum ? weight[q] : 1.0) * mean;
+            row[q] = kept * row[q] + (sum ? weight[q] : 1.0) * mean;
         }
     }
 }
@@ -145,7 +190,7 @@ static bool next_group(const struct body *body, const struct block *block, int64
 {
     int64_t last = block->first_point + block->point_count;
     for (; *begin < last; *begin = *end) {
-        *end = smoothed_cells_group_end(body, *begin);
+        *end = body->cells.group_end[*begin];
         if (*end > *begin + 1) {
             return true;
         }

@@ -87,7 +87,7 @@ void smoothed_cells_free(struct smoothed_cells *smoothed)
 {
     field_averages_free(&smoothed->averages);
     FREE_ALL(smoothed->interpolant, smoothed->variance_weight, smoothed->linear_gradient, smoothed->group,
-             smoothed->group_end);
+             smoothed->group_end, smoothed->kept);
     *smoothed = (struct smoothed_cells){0};
 }
 
@@ -124,12 +124,12 @@ void smoothed_cells_variation(int dim, const double *grad_N, const double *edge,
 
 int64_t smoothed_cells_group(const struct body *body, int64_t q)
 {
-    return body->cells.group != NULL ? body->cells.group[q] : q;
+    return body->cells.group != NULL && body->cells.kept[q] <= 0.0 ? body->cells.group[q] : q;
 }
 
 int64_t smoothed_cells_group_end(const struct body *body, int64_t q)
 {
-    return body->cells.group != NULL ? body->cells.group_end[q] : q + 1;
+    return body->cells.group != NULL && body->cells.kept[q] <= 0.0 ? body->cells.group_end[q] : q + 1;
 }
 
 int32_t smoothed_cells_edge(const struct body *body, int64_t q, int e)

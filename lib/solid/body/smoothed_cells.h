@@ -59,6 +59,8 @@ struct smoothed_cells {
     int64_t merged_count;    /* cells that are merged with a larger one (merged_cells.h) */
     int32_t *group,
         *group_end; /* of each cell in the body's order: the cells of its group; NULL: all are alone */
+    double *kept;   /* of each cell: how much of its difference from the mean of its group it keeps; 0 of
+                       merged cells, JUNCTION_KEPT at junctions, 1 of cells that are alone; or NULL */
 };
 
 /* Lay out the cells of a body whose sizes, orders and shares are known. STATUS_INPUT when a cell lacks a
@@ -74,11 +76,10 @@ void smoothed_cells_free(struct smoothed_cells *smoothed);
 /* gradient[(dim + 1) * dim]: gradients of the linear shape functions of cell q, in the body's order, 1/m. */
 void smoothed_cells_linear_gradients(const struct body *body, int64_t q, double *gradient);
 
-/* The cells that are one domain with cell q (merged_cells.h): from the first to before the last. */
+/* The cells that are merged with cell q (merged_cells.h), from the first to before the last; and the volume
+ * of cell q as a share of that of all of them. */
 int64_t smoothed_cells_group(const struct body *body, int64_t q);
 int64_t smoothed_cells_group_end(const struct body *body, int64_t q);
-
-/* The volume of cell q as a share of that of its group. */
 double smoothed_cells_share(const struct body *body, int64_t q);
 
 /* The row of edge e of cell q in the averages' matrix. */
