@@ -122,7 +122,7 @@ END
     cmp note said
     mts print points.row at.txt | cmp - rows
     mts print u at.txt > u
-    near 0.1 u expected # exact but around the corners, where weights follow paths
+    near 0.1 u expected # exact but where nodes beyond the corners come into sight
     mts check at.txt
     # None there is an error; the option is for points of the user's.
     echo '9 9' > far.tsv

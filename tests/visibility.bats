@@ -18,7 +18,7 @@ END
     nodes -u mm blocks.msh > blocks.mts
 }
 
-@test "a slit: what is around the tip stands in the stream, the same bytes for any number of threads" {
+@test "a slit: the same bytes for any number of threads" {
     gmsh -2 -v 0 -setnumber h 2 "$top/examples/hard/slit.geo" -o slit.msh > /dev/null
     nodes -u mm slit.msh | ipoints -g 4 > points.mts
     for threads in 1 2 3; do
@@ -26,8 +26,6 @@ END
         cmp 1.mts $threads.mts
     done
     mts check 1.mts
-    mts list 1.mts | has 'nbr\.around'
-    mts list 1.mts | has 'nbr\.image'
     mts text 1.mts | grep '^# support.radius' | has 'reach=cells'
 }
 
@@ -62,18 +60,6 @@ END
     support -v -t cloud.dat 2> notes | grep '^# support.radius' | has 'reach=distance'
     grep -q 'neighbours by distance alone' notes
     refused 2 "the input has no cells" support --reach cells cloud.dat
-}
-
-@test "sections of what is around corners that do not fit are refused" {
-    gmsh -2 -v 0 -setnumber h 3 "$top/examples/hard/slit.geo" -o slit.msh > /dev/null
-    nodes -u mm slit.msh | support -t > lists.dat 2> notes
-    rows=$(awk '$2 == "facepoint.around" { print $4 }' lists.dat)
-    [ "$rows" -gt 2 ]
-    awk '$2 == "facepoint.around" { print; getline; print 1000000; next } { print }' lists.dat > bad.dat
-    refused 2 "facepoint.around: row " shapefn bad.dat
-    run -1 --separate-stderr mts check bad.dat
-    awk '$2 == "facepoint.image" { print; getline; print "nan 0"; next } { print }' lists.dat > bad.dat
-    refused 2 "facepoint.image: row 0" shapefn bad.dat
 }
 
 @test "tables of displacements act neither across a gap nor across a slit" {

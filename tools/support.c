@@ -9,11 +9,10 @@ static const char usage[] =
     "node and the lists of neighbours - the nodes whose supports contain the point - of the\n"
     "integration points, of the points on faces, and of the nodes.\n"
     "\n"
-    "Supports do not act across gaps: a neighbour is a node in sight through the cells or, around\n"
-    "re-entrant corners, one to which a path through the cells is shorter than its support radius; its\n"
-    "weight follows the length of that path. Bodies that no face of a cell joins do not see each\n"
-    "other, even where they touch; a node that cells share sees, and is seen by, all of them. Clouds\n"
-    "without cells have neighbours by distance alone.\n"
+    "Supports do not act across gaps: a neighbour is a node in sight through the cells, or not quite so:\n"
+    "seen from a node of the cells at the point, with a detour of at most 5 %. Bodies that no\n"
+    "face of a cell joins do not see each other, even where they touch; a node that cells share sees,\n"
+    "and is seen by, all of them. Clouds without cells have neighbours by distance alone.\n"
     "\n"
     "Nor do they act across the boundaries between regions, or with -i across those of some: where the\n"
     "stiffness jumps the gradient of the displacement does, which shape functions that see both sides\n"
@@ -23,7 +22,8 @@ static const char usage[] =
     "\n"
     "Where a list holds too few nodes, or badly placed ones, for the basis, all radii are widened for\n"
     "that point until the moment matrix is well conditioned and the gradients of the shape functions\n"
-    "are bounded. If no radius up to eightfold bounds the gradients, the one of the least is taken, with\n"
+    "are bounded. If no radius up to "
+    "eightfold bounds the gradients, the one of the least is taken, with\n"
     "a note; if none serves the moment matrix, the tool stops (status 1) and names the point. Without\n"
     "earlier sections the defaults of ipoints are run first.\n"
     "\n"
@@ -103,9 +103,6 @@ static void note_report(const struct tool *tool, const struct support_report *re
         tool_note(tool, "%jd %s: %jd to %jd neighbours, mean %.1f, widened at %jd", found->count, list->what,
                   found->fewest, found->most,
                   found->count > 0 ? (double)list->pairs / (double)found->count : 0.0, found->widened);
-        if (found->around_count > 0) {
-            tool_note(tool, "%jd neighbours of %s are around corners", found->around_count, list->what);
-        }
     }
 }
 

@@ -54,7 +54,6 @@ static enum status put_lists(struct stream *stream, const struct support_options
     const struct section *points = listed->points;
     const char *prefix = listed->prefix;
     FREED_BY(support_free) struct support_lists lists = {0};
-    char vector[64];
     int64_t count = points->rows;
     RETURN_IF_ERROR(support_space_lists(options, space, &listed->places, count, points->data, points->name,
                                         &lists, error));
@@ -68,13 +67,6 @@ static enum status put_lists(struct stream *stream, const struct support_options
     RETURN_IF_ERROR(stream_put_member(stream, prefix, "ptr", TYPE_I8, count + 1, 1, "", &lists.ptr, error));
     RETURN_IF_ERROR(stream_put_member(stream, prefix, "idx", TYPE_I4, pairs, 1, "", &lists.idx, error));
     RETURN_IF_ERROR(stream_put_member(stream, prefix, "widen", TYPE_F8, count, 1, "", &lists.widen, error));
-    if (lists.around_count > 0) {
-        RETURN_IF_ERROR(stream_put_member(stream, prefix, "around", TYPE_I8, lists.around_count, 1, "",
-                                          &lists.around_pair, error));
-        RETURN_IF_ERROR(stream_put_member(stream, prefix, "image", TYPE_F8, lists.around_count, points->cols,
-                                          vector_attributes((int)points->cols, "m", vector),
-                                          &lists.around_offset, error));
-    }
     return STATUS_OK;
 }
 

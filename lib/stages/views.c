@@ -253,27 +253,6 @@ static enum status view_member(const struct stream *stream, const char *prefix, 
                : stream_view(stream, name, section, error);
 }
 
-/* The sections PREFIX.around and .image, if they exist, of lists with `pairs` entries. */
-static enum status view_around(const struct stream *stream, const char *prefix, int64_t pairs,
-                               struct around *around, struct error *error)
-{
-    const struct section *pair, *image;
-    *around = (struct around){0};
-    RETURN_IF_ERROR(view_member(stream, prefix, "around", false, &pair, error));
-    if (pair == NULL) {
-        return STATUS_OK;
-    }
-    RETURN_IF_ERROR(view_member(stream, prefix, "image", true, &image, error));
-    *around = (struct around){.count = pair->rows, .pair = pair->data, .offset = image->data};
-    for (int64_t i = 0; i < pair->rows; i++) {
-        if (around->pair[i] < (i > 0 ? around->pair[i - 1] + 1 : 0) || around->pair[i] >= pairs) {
-            return fail(error, STATUS_INPUT, "%s.around: row %jd: no neighbour %jd, or not ascending", prefix,
-                        i, around->pair[i]);
-        }
-    }
-    return section_check_numbers(image, FINITE, error);
-}
-
 enum status stream_neighbours(const struct stream *stream, const char *prefix, int64_t rows, int64_t columns,
                               struct neighbours *lists, struct error *error)
 {
@@ -304,7 +283,7 @@ enum status stream_neighbours(const struct stream *stream, const char *prefix, i
         RETURN_IF_ERROR(section_check_numbers(widen, AT_LEAST_ONE, error));
         lists->widen = widen->data;
     }
-    return view_around(stream, prefix, idx->rows, &lists->around, error);
+    return STATUS_OK;
 }
 
 enum status stream_put_member(struct stream *stream, const char *prefix, const char *name,

@@ -60,7 +60,7 @@ MUST_CHECK enum status stream_faces(const struct stream *stream, const struct ce
                                     struct faces *faces, struct error *error);
 
 /* A CSR list: PREFIX.ptr (rows + 1), PREFIX.idx (within [0, columns), ascending in each row), and
- * PREFIX.widen, .around and .image if they exist. */
+ * PREFIX.widen if it exists. */
 MUST_CHECK enum status stream_neighbours(const struct stream *stream, const char *prefix, int64_t rows,
                                          int64_t columns, struct neighbours *lists, struct error *error);
 

@@ -16,37 +16,7 @@ struct neighbours support_view(const struct support_lists *lists)
         .ptr = lists->ptr,
         .idx = lists->idx,
         .widen = lists->widen,
-        .around = {lists->around_count, lists->around_pair, lists->around_offset},
     };
-}
-
-/* Images of the neighbours of points: see mls_support. */
-struct images {
-    int64_t next; /* of struct around */
-    int64_t room;
-    double *offset;
-};
-
-/* Set support->image if some of the neighbours [first, last) of the lists, those of the next point, are seen
- * around corners. */
-static enum status find_images(int dim, const struct neighbours *lists, int64_t first, int64_t last,
-                               struct images *images, struct mls_support *support, struct error *error)
-{
-    const struct around *around = &lists->around;
-    if (images->next == around->count || around->pair[images->next] >= last) {
-        return STATUS_OK;
-    }
-    RETURN_IF_ERROR(GROW_ARRAY(&images->offset, (last - first) * dim, &images->room, error));
-    for (int64_t i = 0; i < (last - first) * dim; i++) {
-        images->offset[i] =
-            support->nodes[(int64_t)lists->idx[first + i / dim] * dim + i % dim] - support->x[i % dim];
-    }
-    for (; images->next < around->count && around->pair[images->next] < last; images->next++) {
-        memcpy(images->offset + (around->pair[images->next] - first) * dim,
-               around->offset + images->next * dim, (size_t)dim * sizeof *images->offset);
-    }
-    support->image = images->offset;
-    return STATUS_OK;
 }
 
 /* The input of a table, and its points. */
@@ -65,8 +35,6 @@ static enum status tabulate(const struct tabulation *table, int64_t first, int64
     enum status status = STATUS_OK;
     const struct neighbours *lists = table->lists;
     struct mls_work work = {0};
-    const struct around *around = &lists->around; /* neighbours that are seen around corners */
-    struct images images = {.next = first_from(around->pair, 0, around->count, lists->ptr[first])};
     int dim = table->mls->dim;
     for (int64_t p = first; p < last; p++) {
         enum mls_verdict verdict;
@@ -77,7 +45,6 @@ static enum status tabulate(const struct tabulation *table, int64_t first, int64
                                       .widen = lists->widen[p],
                                       .neighbours = lists->idx + pair,
                                       .count = lists->ptr[p + 1] - pair};
-        TRY(find_images(dim, lists, pair, lists->ptr[p + 1], &images, &support, error));
         TRY(mls_evaluate(table->mls, &support, &work, phi + at, dphi != NULL ? dphi + at * dim : NULL,
                          &verdict, error));
         if (verdict != MLS_GOOD) {
@@ -92,7 +59,6 @@ static enum status tabulate(const struct tabulation *table, int64_t first, int64
     }
 done:
     mls_work_free(&work);
-    free(images.offset);
     return status;
 }
 

@@ -6,20 +6,12 @@
 #include "approx/cells/cells.h"
 #include "approx/support/support.h"
 
-/* The neighbours that points see around corners (see visibility.h). */
-struct around {
-    int64_t count;
-    const int64_t *pair;  /* count: places in idx, ascending */
-    const double *offset; /* count * dim: from the point to the neighbour's image (mls_support), m */
-};
-
 /* A view of lists of neighbours (CSR), made by support_build. */
 struct neighbours {
     int64_t count;
     const int64_t *ptr; /* count + 1 */
     const int32_t *idx;
     const double *widen; /* count */
-    struct around around;
 };
 
 /* A view of lists. */

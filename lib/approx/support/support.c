@@ -30,8 +30,7 @@ static void worker_free(int64_t body_count, struct worker *worker)
     for (int64_t b = 0; b < body_count && worker->visibility != NULL; b++) {
         visibility_work_free(&worker->visibility[b]);
     }
-    FREE_ALL(worker->list.index, worker->around_pair, worker->around_offset, worker->visibility,
-             worker->order, worker->gradient);
+    FREE_ALL(worker->list.index, worker->visibility, worker->order, worker->gradient);
     mls_work_free(&worker->work);
 }
 
@@ -85,7 +84,7 @@ static void add_steep(struct steep_points *steep, const struct steep_points *mor
 static enum status build_chunk(const struct search *search, int64_t first, int64_t last,
                                struct support_lists *lists, struct worker *worker, struct error *error)
 {
-    worker->list.count = worker->around_count = 0;
+    worker->list.count = 0;
     worker->steep = (struct steep_points){0};
     for (int64_t p = first; p < last; p++) {
         struct found found;
@@ -111,33 +110,13 @@ static enum status build_chunk(const struct search *search, int64_t first, int64
     return STATUS_OK;
 }
 
-/* Append a worker's neighbours around corners to those of the lists, which have `before` pairs so far. */
-static enum status append_around(int dim, const struct worker *worker, int64_t before,
-                                 struct support_lists *lists, struct error *error)
-{
-    int64_t count = lists->around_count + worker->around_count;
-    if (worker->around_count == 0) {
-        return STATUS_OK;
-    }
-    RETURN_IF_ERROR(RESIZE_ARRAY(&lists->around_pair, count, error));
-    RETURN_IF_ERROR(RESIZE_ARRAY(&lists->around_offset, count * dim, error));
-    for (int64_t i = 0; i < worker->around_count; i++) {
-        lists->around_pair[lists->around_count + i] = before + worker->around_pair[i];
-    }
-    memcpy(lists->around_offset + lists->around_count * dim, worker->around_offset,
-           (size_t)(worker->around_count * dim) * sizeof(double));
-    lists->around_count = count;
-    return STATUS_OK;
-}
-
 /* Append a worker's list of the points [first, last) to `all`; turn counts into lists->ptr, and update the
  * statistics. */
-static enum status append_chunk(int dim, struct support_lists *lists, int64_t first, int64_t last,
+static enum status append_chunk(struct support_lists *lists, int64_t first, int64_t last,
                                 const struct worker *worker, struct index_list *all, struct error *error)
 {
     const struct index_list *own = &worker->list;
     RETURN_IF_ERROR(index_list_reserve(all, own->count, error));
-    RETURN_IF_ERROR(append_around(dim, worker, all->count, lists, error));
     add_steep(&lists->steep, &worker->steep);
     if (own->count > 0) {
         memcpy(all->index + all->count, own->index, (size_t)own->count * sizeof *own->index);
@@ -177,9 +156,8 @@ static enum status build_chunks(const struct search *search, struct support_list
             }
 #pragma omp ordered
             if (failure == STATUS_OK) {
-                failure = outcome == STATUS_OK
-                              ? append_chunk(search->dim, lists, first, last, &worker, all, &own)
-                              : outcome;
+                failure =
+                    outcome == STATUS_OK ? append_chunk(lists, first, last, &worker, all, &own) : outcome;
                 if (failure != STATUS_OK) {
                     *error = own;
                 }
@@ -222,13 +200,6 @@ enum status support_build_among(const struct support_options *options, int64_t b
         search.places = *places;
     }
     TRY(check_finite(&search, count, error));
-    TRY(NEW_ARRAY(&search.shadows, body_count, error));
-    for (int32_t b = 0; b < body_count && !search.places.nodes; b++) {
-        if (body[b].visibility != NULL) {
-            TRY(visibility_shadows_build(body[b].visibility, count, x, body_of, b, &search.shadows[b],
-                                         error));
-        }
-    }
     TRY(build_chunks(&search, lists, &all, error));
     lists->idx = array_grow(all.index, all.count, sizeof *all.index); /* release what is not used */
     if (lists->idx == NULL) {
@@ -236,16 +207,12 @@ enum status support_build_among(const struct support_options *options, int64_t b
     }
     all.index = NULL;
 done:
-    for (int64_t b = 0; b < body_count && search.shadows != NULL; b++) {
-        visibility_shadows_free(&search.shadows[b]);
-    }
-    free(search.shadows);
     free(all.index);
     return status;
 }
 
 void support_free(struct support_lists *lists)
 {
-    FREE_ALL(lists->ptr, lists->idx, lists->widen, lists->around_pair, lists->around_offset);
+    FREE_ALL(lists->ptr, lists->idx, lists->widen);
     *lists = (struct support_lists){0};
 }

@@ -31,16 +31,13 @@ struct steep_points {
 /* Neighbour lists of `count` points (CSR). */
 struct support_lists {
     int64_t count;
-    int64_t *ptr;         /* count + 1 */
-    int32_t *idx;         /* ptr[count] node indices, ascending within a point */
-    double *widen;        /* count: factor on the radii, >= 1 */
-    int64_t widened;      /* how many points needed widening */
-    double widest;        /* the largest factor */
+    int64_t *ptr;    /* count + 1 */
+    int32_t *idx;    /* ptr[count] node indices, ascending within a point */
+    double *widen;   /* count: factor on the radii, >= 1 */
+    int64_t widened; /* how many points needed widening */
+    double widest;   /* the largest factor */
     struct steep_points steep;
     int64_t fewest, most; /* neighbours of a point; 0 without points */
-    int64_t around_count; /* neighbours seen around corners (see struct around) */
-    int64_t *around_pair;
-    double *around_offset;
 };
 
 /* spacing[node_count], m: mean distance to the 2 dim nearest other nodes, for clouds without cells (with
@@ -53,12 +50,12 @@ MUST_CHECK enum status support_radii(const struct support_options *options, int6
                                      const double *spacing, double *radius, struct error *error);
 
 /* The neighbour lists of points x[count * dim]; `what` names these in messages. With `visibility`, neighbours
- * must be visible through the cells, or connected around corners within their radius (visibility.h), and
- * `places` are the cells that contain the points; with visibility NULL all nodes within their radius are
- * neighbours. Threaded; the result does not depend on the number of threads. Widening ends at eightfold:
- * gradients may exceed their bound then, as little as any of these radii lets them (lists->steep).
- * STATUS_VERDICT, naming the point, if no moment matrix is well-conditioned; without options->widen the shape
- * functions report that. STATUS_INPUT for coordinates that are not finite. */
+ * must be visible through the cells (visibility.h), and `places` are the cells that contain the points; with
+ * visibility NULL all nodes within their radius are neighbours. Threaded; the result does not depend on the
+ * number of threads. Widening ends at eightfold: gradients may exceed their bound then, as little as any of
+ * these radii lets them (lists->steep). STATUS_VERDICT, naming the point, if no moment matrix is
+ * well-conditioned; without options->widen the shape functions report that. STATUS_INPUT for coordinates that
+ * are not finite. */
 MUST_CHECK enum status support_build(const struct support_options *options, const struct point_grid *grid,
                                      const struct visibility *visibility,
                                      const struct visibility_places *places, int64_t count, const double *x,

@@ -9,19 +9,9 @@
 
 static const double widen_step = 1.05;
 
-/* Squared distance from x to a neighbour; around a corner, along the path. */
-static double neighbour_distance2(const struct point_grid *grid, const double *x, int32_t node,
-                                  const double *image)
-{
-    static const double origin[3] = {0.0, 0.0, 0.0};
-    return image != NULL ? vector_distance2(grid->dim, image, origin)
-                         : vector_distance2(grid->dim, x, grid->x + (int64_t)node * grid->dim);
-}
-
-/* Keep the `most` nearest of the neighbours index[count], of equally near ones those with lower index;
- * image[count * dim] or NULL. */
+/* Keep the `most` nearest of the neighbours index[count], of equally near ones those with lower index. */
 static enum status keep_nearest(const struct point_grid *grid, const double *x, int64_t most, int32_t *index,
-                                double *image, int64_t *count, struct worker *worker, struct error *error)
+                                int64_t *count, struct worker *worker, struct error *error)
 {
     int dim = grid->dim;
     if (most <= 0 || *count <= most) {
@@ -30,7 +20,7 @@ static enum status keep_nearest(const struct point_grid *grid, const double *x, 
     RETURN_IF_ERROR(GROW_ARRAY(&worker->order, *count, &worker->order_room, error));
     double *distance2 = worker->order;
     for (int64_t i = 0; i < *count; i++) {
-        distance2[i] = neighbour_distance2(grid, x, index[i], image != NULL ? image + i * dim : NULL);
+        distance2[i] = vector_distance2(dim, x, grid->x + (int64_t)index[i] * dim);
     }
     /* Drop the farthest (of equals the highest index) until `most` remain; the order stays ascending. */
     for (; *count > most; --*count) {
@@ -42,10 +32,6 @@ static enum status keep_nearest(const struct point_grid *grid, const double *x, 
             index[i] = index[i + 1];
             distance2[i] = distance2[i + 1];
         }
-        if (image != NULL) {
-            memmove(image + farthest * dim, image + (farthest + 1) * dim,
-                    (size_t)((*count - 1 - farthest) * dim) * sizeof *image);
-        }
     }
     return STATUS_OK;
 }
@@ -53,14 +39,12 @@ static enum status keep_nearest(const struct point_grid *grid, const double *x, 
 /* Mean spacing of the nodes in a support: the edge of the cube (square) with the volume per node. A list
  * limited to the nearest extends only to its farthest node. */
 static double spacing_within(const struct support_options *options, const struct point_grid *grid,
-                             const double *x, const int32_t *index, const double *image, int64_t count,
-                             double widen)
+                             const double *x, const int32_t *index, int64_t count, double widen)
 {
     double farthest = 0.0;
     if (count == options->most) {
         for (int64_t i = 0; i < count; i++) {
-            double distance2 =
-                neighbour_distance2(grid, x, index[i], image != NULL ? image + i * grid->dim : NULL);
+            double distance2 = vector_distance2(grid->dim, x, grid->x + (int64_t)index[i] * grid->dim);
             farthest = distance2 > farthest ? distance2 : farthest;
         }
         farthest = sqrt(farthest);
@@ -77,16 +61,15 @@ static double spacing_within(const struct support_options *options, const struct
 /* Judge a support: the verdict on its number of nodes and moment matrix, and the largest gradient times the
  * spacing. */
 static enum status judge(const struct support_options *options, const struct point_grid *grid,
-                         const double *x, const int32_t *index, const double *image, int64_t count,
-                         struct worker *worker, struct found *found, struct error *error)
+                         const double *x, const int32_t *index, int64_t count, struct worker *worker,
+                         struct found *found, struct error *error)
 {
     struct mls_support support = {.x = x,
                                   .nodes = grid->x,
                                   .radius = grid->radius,
                                   .widen = found->widen,
                                   .neighbours = index,
-                                  .count = count,
-                                  .image = image};
+                                  .count = count};
     double largest2 = 0.0;
     int dim = grid->dim;
     found->verdict = MLS_TOO_FEW;
@@ -100,39 +83,14 @@ static enum status judge(const struct support_options *options, const struct poi
         double square = vector_dot(dim, worker->gradient + i * dim, worker->gradient + i * dim);
         largest2 = square > largest2 ? square : largest2;
     }
-    found->steepness = sqrt(largest2) * spacing_within(options, grid, x, index, image, count, found->widen);
-    return STATUS_OK;
-}
-
-/* Record the neighbours of the list from `first` on that are connected around corners: their image is not at
- * the node. */
-static enum status note_around(const struct point_grid *grid, const double *x, const double *image,
-                               int64_t first, struct worker *worker, struct error *error)
-{
-    int dim = grid->dim;
-    for (int64_t i = first; i < worker->list.count; i++, image += dim) {
-        const double *node = grid->x + (int64_t)worker->list.index[i] * dim;
-        bool straight = true;
-        for (int a = 0; a < dim; a++) {
-            straight = straight && image[a] == node[a] - x[a];
-        }
-        if (straight) {
-            continue;
-        }
-        int64_t at = worker->around_count;
-        RETURN_IF_ERROR(GROW_ARRAY(&worker->around_pair, at + 1, &worker->pair_room, error));
-        RETURN_IF_ERROR(GROW_ARRAY(&worker->around_offset, (at + 1) * dim, &worker->offset_room, error));
-        worker->around_pair[at] = i;
-        memcpy(worker->around_offset + at * dim, image, (size_t)dim * sizeof *image);
-        worker->around_count++;
-    }
+    found->steepness = sqrt(largest2) * spacing_within(options, grid, x, index, count, found->widen);
     return STATUS_OK;
 }
 
 /* Replace the neighbours from `first` on of the worker's list by those within the radii times found->widen.
- * *image: where they appear around corners, or NULL. */
+ */
 static enum status gather(const struct search *search, int64_t p, int64_t first, struct worker *worker,
-                          const struct found *found, double **image, struct error *error)
+                          const struct found *found, struct error *error)
 {
     int32_t body = search_body(search, p);
     const struct support_body *of = &search->body[body];
@@ -142,13 +100,10 @@ static enum status gather(const struct search *search, int64_t p, int64_t first,
     RETURN_IF_ERROR(point_grid_query(of->grid, x, found->widen, &worker->list, error));
     int64_t count = worker->list.count - first;
     int32_t *index = worker->list.index + first;
-    *image = NULL;
     if (of->visibility != NULL) {
-        RETURN_IF_ERROR(visibility_filter(of->visibility, &search->shadows[body], found->widen, index, &count,
-                                          work, error));
-        *image = work->around > 0 ? work->image : NULL;
+        RETURN_IF_ERROR(visibility_filter(of->visibility, found->widen, index, &count, work, error));
     }
-    RETURN_IF_ERROR(keep_nearest(of->grid, x, search->options->most, index, *image, &count, worker, error));
+    RETURN_IF_ERROR(keep_nearest(of->grid, x, search->options->most, index, &count, worker, error));
     worker->list.count = first + count;
     return STATUS_OK;
 }
@@ -163,31 +118,28 @@ enum status support_find(const struct search *search, int64_t p, struct worker *
     const double *x = search->x + p * grid->dim;
     struct found best = {.steepness = INFINITY};
     int64_t first = worker->list.count;
-    double *image;
     if (visibility != NULL) {
         RETURN_IF_ERROR(
             visibility_begin(visibility, &search->places, p, x, &worker->visibility[body], error));
     }
     *found = (struct found){.widen = 1.0};
     if (!options->widen) {
-        RETURN_IF_ERROR(gather(search, p, first, worker, found, &image, error));
-        return image != NULL ? note_around(grid, x, image, first, worker, error) : STATUS_OK;
+        return gather(search, p, first, worker, found, error);
     }
     for (; found->widen <= SUPPORT_WIDEN_LIMIT; found->widen *= widen_step) {
-        RETURN_IF_ERROR(gather(search, p, first, worker, found, &image, error));
-        RETURN_IF_ERROR(judge(options, grid, x, worker->list.index + first, image, worker->list.count - first,
+        RETURN_IF_ERROR(gather(search, p, first, worker, found, error));
+        RETURN_IF_ERROR(judge(options, grid, x, worker->list.index + first, worker->list.count - first,
                               worker, found, error));
         bool good = found->verdict == MLS_GOOD;
         best = good && found->steepness < best.steepness ? *found : best;
         if (good && found->steepness <= options->gradient_bound) {
             found->steepness = 0.0;
-            return image != NULL ? note_around(grid, x, image, first, worker, error) : STATUS_OK;
+            return STATUS_OK;
         }
     }
     if (best.widen > 0.0) {
         *found = best;
-        RETURN_IF_ERROR(gather(search, p, first, worker, found, &image, error));
-        return image != NULL ? note_around(grid, x, image, first, worker, error) : STATUS_OK;
+        return gather(search, p, first, worker, found, error);
     }
     return STATUS_OK;
 }

@@ -13,7 +13,6 @@ struct search {
     const struct support_body *body;
     const int32_t *body_of; /* of each point; NULL: the first */
     struct visibility_places places;
-    struct visibility_shadows *shadows; /* body_count: shadows that may contain points of each body */
     const double *x;
     const char *what;
     bool *unserved; /* points without a good support; NULL: such a point is an error */
@@ -22,9 +21,6 @@ struct search {
 /* One thread's growing lists and scratch. */
 struct worker {
     struct index_list list;
-    int64_t around_count, pair_room, offset_room; /* neighbours seen around corners */
-    int64_t *around_pair;                         /* places in the list */
-    double *around_offset;
     struct visibility_work *visibility; /* for each body */
     struct mls_work work;
     double *order, *gradient;

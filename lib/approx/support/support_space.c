@@ -1,6 +1,5 @@
 #include "approx/support/support_space.h"
 
-#include "approx/visibility/visibility_private.h"
 #include "base/lists.h"
 #include "base/memory.h"
 

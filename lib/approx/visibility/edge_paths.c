@@ -1,6 +1,5 @@
 #include "approx/visibility/edge_paths.h"
 
-#include "approx/visibility/visibility_private.h"
 #include "base/memory.h"
 #include "base/vector.h"
 

@@ -1,6 +1,11 @@
-#include "approx/visibility/visibility_private.h"
+#include "approx/visibility/visibility.h"
 
+#include "approx/cells/parts.h"
+#include "base/box.h"
+#include "base/lists.h"
 #include "base/memory.h"
+#include "base/round_off.h"
+#include "base/sets.h"
 #include "base/vector.h"
 
 #include <math.h>
@@ -8,23 +13,139 @@
 
 const char *const visibility_names[VISIBILITY_RULE_COUNT] = {"cells", "distance"};
 
+/* The longest path to a neighbour that is not visible, by the straight distance. */
+static const double most_detour = 1.05;
+
+enum status visibility_build_cells(const struct cells *cells, struct visibility *visibility,
+                                   struct error *error)
+{
+    *visibility = (struct visibility){.cells = *cells};
+    RETURN_IF_ERROR(NEW_ARRAY(&visibility->across, cells->count * (cells->dim + 1), error));
+    RETURN_IF_ERROR(cells_across(cells, visibility->across, error));
+    return lists_by_row(cells->count, cells->dim + 1, cells->node, cells->node_count, &visibility->star_ptr,
+                        &visibility->star, error);
+}
+
+/* part[node_count]: the body of each node, -1: of several; cells with a common face are of one body. */
+static enum status find_bodies(const struct visibility *visibility, int32_t *part, struct error *error)
+{
+    const struct cells *cells = &visibility->cells;
+    int corners = cells->dim + 1;
+    NEW_SCRATCH(int32_t, of_cell, cells->count, error);
+    for (int64_t c = 0; c < cells->count; c++) {
+        of_cell[c] = (int32_t)c;
+    }
+    for (int64_t s = 0; s < cells->count * corners; s++) {
+        if (visibility->across[s] >= 0) {
+            set_join(of_cell, (int32_t)(s / corners), visibility->across[s]);
+        }
+    }
+    for (int64_t c = 0; c < cells->count; c++) {
+        of_cell[c] = set_first(of_cell, (int32_t)c);
+    }
+    return nodes_parts(cells, of_cell, part, error);
+}
+
+/* The sector of directions from `from` that x lies in, by the signs of its coordinates there. */
+static int sector_of(int dim, const double *from, const double *x)
+{
+    int sector = 0;
+    for (int a = 0; a < dim; a++) {
+        sector |= (x[a] > from[a]) << a;
+    }
+    return sector;
+}
+
+/* A facet may hide a node from points of its support if the node is beyond the facet, or on it but not a node
+ * of it, or of another body (`apart`). Note in which sectors, and from which distance on. */
+static void note_facet(struct visibility *visibility, const int32_t *facet, int32_t node, bool apart)
+{
+    int dim = visibility->cells.dim;
+    const double *x = visibility->cells.x, *y = x + (int64_t)node * dim;
+    double area[3] = {0.0, 0.0, 0.0}, middle[3], from[3], radius = 0.0;
+    double tolerance = COARSE_ROUND_OFF * visibility->grid->radius[node];
+    face_area_vector(dim, x, facet, area);
+    vector_middle(dim, x, dim, facet, middle);
+    vector_subtract(dim, y, middle, from);
+    for (int k = 0; k < dim; k++) {
+        radius = fmax(radius, vector_distance(dim, middle, x + (int64_t)facet[k] * dim) * (1.0 + 1e-6));
+        if (facet[k] == node) {
+            return;
+        }
+    }
+    double height = vector_dot(dim, area, from) / vector_length(dim, area);
+    double beside = vector_length(dim, from) - radius;
+    if (!apart && (height < -tolerance || (height <= tolerance && beside > 0.0))) {
+        return;
+    }
+    struct box box = box_of_nodes(dim, x, facet, dim);
+    for (int sector = 0; sector < 1 << dim; sector++) {
+        double *least = &visibility->hidden_from[((int64_t)node << dim) + sector];
+        bool meets = true;
+        for (int a = 0; a < dim; a++) {
+            meets =
+                meets && (sector >> a & 1 ? box.high[a] >= y[a] - tolerance : box.low[a] <= y[a] + tolerance);
+        }
+        *least = apart ? 0.0 : meets ? fmin(*least, fmax(height, beside) - tolerance) : *least;
+    }
+}
+
+enum status visibility_build(const struct cells *cells, const struct point_grid *grid,
+                             struct visibility *visibility, struct error *error)
+{
+    FREED_BY(faces_free) struct faces faces = {0};
+    FREED_BY(index_list_free) struct index_list near = {0};
+    RETURN_IF_ERROR(visibility_build_cells(cells, visibility, error));
+    visibility->grid = grid;
+    NEW_SCRATCH(int32_t, part, cells->node_count, error);
+    RETURN_IF_ERROR(find_bodies(visibility, part, error));
+    RETURN_IF_ERROR(faces_build(cells, true, &faces, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&visibility->hidden_from, cells->node_count << cells->dim, error));
+    for (int64_t i = 0; i < cells->node_count << cells->dim; i++) {
+        visibility->hidden_from[i] = INFINITY;
+    }
+    for (int64_t f = 0; f < faces.count; f++) {
+        const int32_t *facet = faces.node + f * cells->dim;
+        struct box box = box_of_nodes(cells->dim, cells->x, facet, cells->dim);
+        near.count = 0;
+        RETURN_IF_ERROR(point_grid_query_box(grid, box.low, box.high, 1.0, &near, error));
+        for (int64_t i = 0; i < near.count; i++) {
+            note_facet(visibility, facet, near.index[i], part[near.index[i]] != part[facet[0]]);
+        }
+    }
+    return STATUS_OK;
+}
+
+void visibility_free(struct visibility *visibility)
+{
+    FREE_ALL(visibility->across, visibility->star_ptr, visibility->star, visibility->hidden_from);
+    *visibility = (struct visibility){0};
+}
+
+void visibility_work_free(struct visibility_work *work)
+{
+    FREE_ALL(work->own.index, work->mark, work->stack.index, work->visited.index);
+    *work = (struct visibility_work){0};
+}
+
 enum status visibility_begin(const struct visibility *visibility, const struct visibility_places *places,
                              int64_t p, const double *x, struct visibility_work *work, struct error *error)
 {
-    RETURN_IF_ERROR(visibility_work_reserve(visibility, work, error));
+    if (work->mark == NULL) {
+        RETURN_IF_ERROR(NEW_ARRAY(&work->mark, visibility->cells.node_count, error));
+    }
     if (++work->serial >= UINT32_MAX / 2) {
         memset(work->mark, 0, (size_t)visibility->cells.node_count * sizeof *work->mark);
         work->serial = 1;
     }
-    work->point = p;
     work->x = x;
     work->outside = false;
     memcpy(work->from, x, (size_t)visibility->cells.dim * sizeof *x);
-    work->cell_count = work->node = -1;
+    work->cell_count = -1;
     if (places->nodes) {
-        work->node = places->node != NULL ? places->node[p] : p;
-        work->cell = visibility->star + visibility->star_ptr[work->node];
-        work->cell_count = visibility->star_ptr[work->node + 1] - visibility->star_ptr[work->node];
+        int64_t node = places->node != NULL ? places->node[p] : p;
+        work->cell = visibility->star + visibility->star_ptr[node];
+        work->cell_count = visibility->star_ptr[node + 1] - visibility->star_ptr[node];
     } else if (places->cell != NULL) {
         work->cell = visibility_places_cells(places, p, &work->cell_count);
         work->cell_count = work->cell_count > 0 && work->cell[0] >= 0 ? work->cell_count : -1;
@@ -32,131 +153,72 @@ enum status visibility_begin(const struct visibility *visibility, const struct v
     return STATUS_OK;
 }
 
-/* Mark the candidates that are hidden; *hidden: their number. A node that was checked keeps its mark. */
-static enum status mark_hidden(const struct visibility *visibility, const struct visibility_shadows *shadows,
-                               double widen, const int32_t *index, int64_t count,
-                               struct visibility_work *work, int64_t *hidden, struct error *error)
+/* Whether a node is visible from that node of the point's cells by way of which the path is the shortest, if
+ * it is not much longer than straight. */
+static enum status look_around(const struct visibility *visibility, int32_t node,
+                               struct visibility_work *work, bool *seen, struct error *error)
 {
-    *hidden = 0;
-    for (int64_t i = 0; i < count && work->cell_count < 0; i++) {
-        if (widen > 1.0 || visibility->shadowed[index[i]]) {
-            RETURN_IF_ERROR(visibility_locate(visibility, work->x, work, error));
+    const struct cells *cells = &visibility->cells;
+    int dim = cells->dim, corners = dim + 1;
+    const double *y = cells->x + (int64_t)node * dim, *bend = NULL;
+    double least = most_detour * vector_distance(dim, work->from, y);
+    for (int64_t i = 0; i < work->cell_count * corners; i++) {
+        int32_t corner = cells->node[(int64_t)work->cell[i / corners] * corners + i % corners];
+        const double *by = cells->x + (int64_t)corner * dim;
+        double path = vector_distance(dim, work->from, by) + vector_distance(dim, by, y);
+        if (path < least) {
+            least = path;
+            bend = by;
         }
     }
-    if (work->cell_count <= 0) {
+    *seen = false;
+    return bend != NULL
+               ? visibility_walk(visibility, bend, work->cell, work->cell_count, node, work, seen, error)
+               : STATUS_OK;
+}
+
+/* Whether a node is a neighbour; what is known of it is kept for wider supports. */
+static enum status look(const struct visibility *visibility, int32_t node, struct visibility_work *work,
+                        bool *seen, struct error *error)
+{
+    if (work->mark[node] / 2 == work->serial) {
+        *seen = work->mark[node] % 2 == 1;
         return STATUS_OK;
     }
-    if (widen <= 1.0 && work->node >= 0) {
-        *hidden = visibility->hidden_ptr[work->node + 1] - visibility->hidden_ptr[work->node];
-        for (int64_t i = 0; i < *hidden; i++) {
-            work->mark[visibility->hidden[visibility->hidden_ptr[work->node] + i]] = 2 * work->serial + 1;
-        }
-        return STATUS_OK;
+    RETURN_IF_ERROR(
+        visibility_walk(visibility, work->from, work->cell, work->cell_count, node, work, seen, error));
+    if (!*seen) {
+        RETURN_IF_ERROR(look_around(visibility, node, work, seen, error));
     }
-    if (widen <= 1.0 && !work->outside) {
-        return visibility_mark_shadows(visibility, shadows, work->point, work, hidden, error);
-    }
-    for (int64_t i = 0; i < count; i++) {
-        int32_t node = index[i];
-        if (work->mark[node] / 2 != work->serial) {
-            bool seen;
-            RETURN_IF_ERROR(visibility_walk(visibility, work->from, work->cell, work->cell_count, node, work,
-                                            &seen, error));
-            work->mark[node] = 2 * work->serial + !seen;
-        }
-        *hidden += visibility_is_hidden(work, node);
-    }
+    work->mark[node] = 2 * work->serial + *seen;
     return STATUS_OK;
 }
 
-/* Keep the neighbours whose paths are short enough, and set their images. */
-static enum status keep(const struct visibility *visibility, double widen, int32_t *index, int64_t *count,
-                        struct visibility_work *work, struct error *error)
+/* Whether a node nearer than its radius may be hidden from the point. */
+static bool may_be_hidden(const struct visibility *visibility, int32_t node, const double *x)
 {
     int dim = visibility->cells.dim;
+    const double *y = visibility->cells.x + (int64_t)node * dim;
+    return vector_distance(dim, y, x) >=
+           visibility->hidden_from[((int64_t)node << dim) + sector_of(dim, y, x)];
+}
+
+enum status visibility_filter(const struct visibility *visibility, double widen, int32_t *index,
+                              int64_t *count, struct visibility_work *work, struct error *error)
+{
     int64_t kept = 0;
-    RETURN_IF_ERROR(GROW_ARRAY(&work->image, *count * dim, &work->image_room, error));
     for (int64_t i = 0; i < *count; i++) {
-        int32_t node = index[i];
-        double *image = work->image + kept * dim, bend[3], length;
-        if (!visibility_is_hidden(work, node)) {
-            vector_subtract(dim, visibility->cells.x + (int64_t)node * dim, work->x, image);
-            index[kept++] = node;
-            continue;
+        bool seen = true;
+        if (widen > 1.0 || work->outside || may_be_hidden(visibility, index[i], work->x)) {
+            RETURN_IF_ERROR(work->cell_count < 0 ? visibility_locate(visibility, work->x, work, error)
+                                                 : STATUS_OK);
+            RETURN_IF_ERROR(work->cell_count > 0 ? look(visibility, index[i], work, &seen, error)
+                                                 : STATUS_OK);
         }
-        if (!(work->length[node] < INFINITY)) {
-            continue;
-        }
-        visibility_first_bend(visibility, node, work, bend, &length);
-        if (!(length < widen * visibility->grid->radius[node])) {
-            continue;
-        }
-        double leg = vector_distance(dim, work->x, bend);
-        for (int a = 0; a < dim; a++) {
-            image[a] = (bend[a] - work->x[a]) * (length / leg);
-        }
-        index[kept++] = node;
-        work->around++;
-    }
-    *count = kept;
-    return STATUS_OK;
-}
-
-/* The connected body that the point is in; -1: several, or not known. */
-static int32_t own_part(const struct visibility *visibility, const struct visibility_work *work)
-{
-    int corners = visibility->cells.dim + 1;
-    int32_t part = -1;
-    for (int64_t i = 0; i < work->cell_count * corners; i++) {
-        int32_t of_node =
-            visibility
-                ->part[visibility->cells.node[(int64_t)work->cell[i / corners] * corners + i % corners]];
-        if (of_node >= 0 && part >= 0 && of_node != part) {
-            return -1;
-        }
-        part = of_node >= 0 ? of_node : part;
-    }
-    return part;
-}
-
-/* Leave the nodes of other bodies out. */
-static enum status keep_body(const struct visibility *visibility, int32_t *index, int64_t *count,
-                             struct visibility_work *work, struct error *error)
-{
-    int64_t kept = 0;
-    RETURN_IF_ERROR(work->cell_count < 0 ? visibility_locate(visibility, work->x, work, error) : STATUS_OK);
-    int32_t own = own_part(visibility, work);
-    for (int64_t i = 0; i < *count && own >= 0; i++) {
-        int32_t part = visibility->part[index[i]];
-        if (part < 0 || part == own) {
+        if (seen) {
             index[kept++] = index[i];
         }
     }
-    *count = own >= 0 ? kept : *count;
+    *count = kept;
     return STATUS_OK;
-}
-
-enum status visibility_filter(const struct visibility *visibility, const struct visibility_shadows *shadows,
-                              double widen, int32_t *index, int64_t *count, struct visibility_work *work,
-                              struct error *error)
-{
-    work->around = 0;
-    if (visibility->part != NULL) {
-        RETURN_IF_ERROR(keep_body(visibility, index, count, work, error));
-    }
-    RETURN_IF_ERROR(mark_hidden(visibility, shadows, widen, index, *count, work, &work->changed, error));
-    if (work->changed > 0) {
-        RETURN_IF_ERROR(visibility_paths(visibility, widen, index, *count, work, error));
-        RETURN_IF_ERROR(keep(visibility, widen, index, count, work, error));
-    }
-    return STATUS_OK;
-}
-
-void visibility_free(struct visibility *visibility)
-{
-    FREE_ALL(visibility->across, visibility->part, visibility->star_ptr, visibility->star, visibility->facet,
-             visibility->shadow, visibility->shadowed, visibility->corner, visibility->edge_ptr,
-             visibility->edge, visibility->seen_ptr, visibility->seen, visibility->seen_length,
-             visibility->hidden_ptr, visibility->hidden);
-    *visibility = (struct visibility){0};
 }

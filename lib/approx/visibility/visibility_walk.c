@@ -1,5 +1,5 @@
 /* Segments through the cells. */
-#include "approx/visibility/visibility_private.h"
+#include "approx/visibility/visibility.h"
 
 #include "base/memory.h"
 #include "base/round_off.h"
@@ -9,10 +9,9 @@
 #include <string.h>
 
 /* The barycentric coordinates of two points in a cell. */
-static void barycentric(const struct cells *cells, int64_t cell, const double *x, const double *y,
-                        double *of_x, double *of_y)
+static inline void barycentric_in(int dim, const struct cells *cells, int64_t cell, const double *x,
+                                  const double *y, double *of_x, double *of_y)
 {
-    int dim = cells->dim;
     const int32_t *v = cells->node + cell * (dim + 1);
     const double *first = cells->x + (int64_t)v[0] * dim;
     double edge[3][3], dual[3][3], from_x[3], from_y[3];
@@ -31,36 +30,51 @@ static void barycentric(const struct cells *cells, int64_t cell, const double *x
         vector_cross(edge[2], edge[0], dual[1]);
         vector_cross(edge[0], edge[1], dual[2]);
     }
-    double volume = vector_dot(dim, edge[0], dual[0]);
+    double inverse = 1.0 / vector_dot(dim, edge[0], dual[0]);
     of_x[0] = of_y[0] = 1.0;
     for (int k = 0; k < dim; k++) {
-        of_x[k + 1] = vector_dot(dim, from_x, dual[k]) / volume;
-        of_y[k + 1] = vector_dot(dim, from_y, dual[k]) / volume;
+        of_x[k + 1] = vector_dot(dim, from_x, dual[k]) * inverse;
+        of_y[k + 1] = vector_dot(dim, from_y, dual[k]) * inverse;
         of_x[0] -= of_x[k + 1];
         of_y[0] -= of_y[k + 1];
     }
 }
 
-/* Whether the segment meets a cell; least[dim + 1]: its barycentric coordinates there. */
-static bool touches(const struct cells *cells, int64_t cell, const double *x, const double *y, double *least)
+static void barycentric(const struct cells *cells, int64_t cell, const double *x, const double *y,
+                        double *of_x, double *of_y)
+{
+    if (cells->dim == 2) {
+        barycentric_in(2, cells, cell, x, y, of_x, of_y);
+    } else {
+        barycentric_in(3, cells, cell, x, y, of_x, of_y);
+    }
+}
+
+/* Whether the segment meets a cell; least[dim + 1]: its barycentric coordinates there; *ahead: the lowest one
+ * of its end. */
+static bool touches(const struct cells *cells, int64_t cell, const double *x, const double *y, double *least,
+                    int *ahead)
 {
     double a[4], b[4], begin = 0.0, end = 1.0;
     int corners = cells->dim + 1;
     barycentric(cells, cell, x, y, a, b);
     for (int k = 0; k < corners; k++) {
-        double slope = b[k] - a[k];
-        if (a[k] < -COARSE_ROUND_OFF && b[k] < -COARSE_ROUND_OFF) {
-            return false;
-        }
         if (a[k] < -COARSE_ROUND_OFF) {
-            begin = fmax(begin, (-COARSE_ROUND_OFF - a[k]) / slope);
+            if (b[k] < -COARSE_ROUND_OFF) {
+                return false;
+            }
+            double at = (-COARSE_ROUND_OFF - a[k]) / (b[k] - a[k]);
+            begin = at > begin ? at : begin;
         } else if (b[k] < -COARSE_ROUND_OFF) {
-            end = fmin(end, (-COARSE_ROUND_OFF - a[k]) / slope);
+            double at = (-COARSE_ROUND_OFF - a[k]) / (b[k] - a[k]);
+            end = at < end ? at : end;
         }
     }
+    *ahead = 0;
     for (int k = 0; k < corners; k++) {
+        *ahead = b[k] < b[*ahead] ? k : *ahead;
         double at_begin = a[k] + begin * (b[k] - a[k]), at_end = a[k] + end * (b[k] - a[k]);
-        least[k] = fmin(at_begin, at_end);
+        least[k] = at_begin < at_end ? at_begin : at_end;
     }
     return begin <= end + COARSE_ROUND_OFF;
 }
@@ -77,12 +91,15 @@ static bool contains(const struct index_list *list, int32_t value)
 
 static enum status visit(int32_t cell, struct visibility_work *work, struct error *error)
 {
-    if (cell >= 0 && !contains(&work->visited, cell)) {
+    if (cell < 0 || contains(&work->visited, cell)) {
+        return STATUS_OK;
+    }
+    if (work->visited.count == work->visited.capacity || work->stack.count == work->stack.capacity) {
         RETURN_IF_ERROR(index_list_reserve(&work->visited, 1, error));
         RETURN_IF_ERROR(index_list_reserve(&work->stack, 1, error));
-        work->visited.index[work->visited.count++] = cell;
-        work->stack.index[work->stack.count++] = cell;
     }
+    work->visited.index[work->visited.count++] = cell;
+    work->stack.index[work->stack.count++] = cell;
     return STATUS_OK;
 }
 
@@ -92,32 +109,41 @@ static bool has_node(const struct cells *cells, int64_t cell, int32_t node)
     return v[0] == node || v[1] == node || v[2] == node || (cells->dim == 3 && v[3] == node);
 }
 
-enum status visibility_walk(const struct visibility *visibility, const double *x, const int32_t *cell,
-                            int64_t cell_count, int32_t node, struct visibility_work *work, bool *arrives,
-                            struct error *error)
+/* Follow the segment from the cells of the stack. */
+static enum status follow(const struct visibility *visibility, const double *x, int32_t node,
+                          struct visibility_work *work, bool *arrives, struct error *error)
 {
-    int corners = visibility->cells.dim + 1;
-    const double *y = node < 0 ? x : visibility->cells.x + (int64_t)node * visibility->cells.dim;
-    work->visited.count = work->stack.count = 0;
-    *arrives = false;
-    for (int64_t i = 0; i < cell_count; i++) {
-        RETURN_IF_ERROR(visit(cell[i], work, error));
-    }
+    int corners = visibility->cells.dim + 1, ahead;
+    const double *y = visibility->cells.x + (int64_t)node * visibility->cells.dim;
     while (work->stack.count > 0) {
         double least[4];
         int32_t at = work->stack.index[--work->stack.count];
-        if (!touches(&visibility->cells, at, x, y, least)) {
-            continue;
-        }
         if (has_node(&visibility->cells, at, node)) {
             *arrives = true;
-            break;
+            return STATUS_OK;
         }
-        for (int k = 0; k < corners; k++) {
+        if (!touches(&visibility->cells, at, x, y, least, &ahead)) {
+            continue;
+        }
+        for (int i = 1; i <= corners; i++) { /* the cell ahead is the next one */
+            int k = ahead + i < corners ? ahead + i : ahead + i - corners;
             if (least[k] <= COARSE_ROUND_OFF) {
                 RETURN_IF_ERROR(visit(visibility->across[(int64_t)at * corners + k], work, error));
             }
         }
+    }
+    return STATUS_OK;
+}
+
+enum status visibility_walk(const struct visibility *visibility, const double *x, const int32_t *cell,
+                            int64_t cell_count, int32_t node, struct visibility_work *work, bool *arrives,
+                            struct error *error)
+{
+    work->visited.count = work->stack.count = 0;
+    *arrives = false;
+    for (int64_t i = 0; i < cell_count && !*arrives; i++) {
+        RETURN_IF_ERROR(visit(cell[i], work, error));
+        RETURN_IF_ERROR(follow(visibility, x, node, work, arrives, error));
     }
     return STATUS_OK;
 }
@@ -148,6 +174,7 @@ enum status visibility_locate(const struct visibility *visibility, const double 
 {
     FREED_BY(index_list_free) struct index_list near = {0};
     double least[4], nearest = INFINITY, pulled[3];
+    int ahead;
     work->own.count = 0;
     work->outside = false;
     RETURN_IF_ERROR(point_grid_query(visibility->grid, x, 1.0, &near, error));
@@ -156,7 +183,7 @@ enum status visibility_locate(const struct visibility *visibility, const double 
         for (int64_t s = visibility->star_ptr[near.index[i]]; s < visibility->star_ptr[near.index[i] + 1];
              s++) {
             int32_t cell = visibility->star[s];
-            if (touches(&visibility->cells, cell, x, x, least)) {
+            if (touches(&visibility->cells, cell, x, x, least, &ahead)) {
                 work->own.count = work->outside ? 0 : work->own.count;
                 work->outside = false;
                 nearest = 0.0;
