@@ -64,9 +64,6 @@ struct mls_support {
     double widen;         /* factor on the radii at this point */
     const int32_t *neighbours;
     int64_t count;
-    const double *image; /* count * dim, or NULL: for each neighbour the vector from x along the first leg of
-                            the shortest path, as long as the path; weights follow it (see visibility.h).
-                            NULL: all neighbours are visible */
 };
 
 /* Values phi[count] and full gradients dphi[count * dim] (per unit of x) at a point; one of them may be NULL.

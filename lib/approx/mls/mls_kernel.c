@@ -3,16 +3,16 @@
 #include "approx/mls/mls_vector.h"
 
 /* Store phi_j = w_j p_j.c in ROW_PHI and slope_j p_j.c in ROW_SLOPE. With `gradients`, set the right-hand
- * sides of their coefficients, e_a - (d_a M) c = e_a + sum_j slope_j xi_a p_j.c p_j, one a for each lane;
- * with `images`, image_a in place of xi_a. Returns the largest defect of sum phi p = p(0), p linear. */
-KERNEL_INLINE double values(int dim, int m, const double *c, bool gradients, bool images,
-                            const struct mls_point *point, lanes *right)
+ * sides of their coefficients, e_a - (d_a M) c = e_a + sum_j slope_j xi_a p_j.c p_j, one a for each lane.
+ * Returns the largest defect of sum phi p = p(0), p linear. */
+KERNEL_INLINE double values(int dim, int m, const double *c, bool gradients, const struct mls_point *point,
+                            lanes *right)
 {
     lanes sum[3][MLS_MAX_BASIS], defect[4];
     memset(sum, 0, sizeof sum);
     memset(defect, 0, sizeof defect);
     for (int64_t j = 0; j < point->padded; j += LANES) {
-        lanes xi[3], p[MLS_MAX_BASIS], image[3], projection, phi, slope;
+        lanes xi[3], p[MLS_MAX_BASIS], projection, phi, slope;
         load_monomials(dim, m, point, j, xi, p);
         polynomial(dim, m, c, xi, &projection);
         load_row(point, ROW_WEIGHT, j, &phi);
@@ -25,12 +25,11 @@ KERNEL_INLINE double values(int dim, int m, const double *c, bool gradients, boo
             load_row(point, ROW_SLOPE, j, &slope);
             slope *= projection;
             store_row(point, ROW_SLOPE, j, &slope);
-            load_vector(dim, point, images ? ROW_IMAGE : ROW_XI, j, image);
             UNROLL
             for (int k = 0; k < m; k++) {
                 lanes part = slope * p[k];
                 for (int a = 0; a < dim; a++) {
-                    sum[a][k] += part * image[a];
+                    sum[a][k] += part * xi[a];
                 }
             }
         }
@@ -49,7 +48,7 @@ KERNEL_INLINE double values(int dim, int m, const double *c, bool gradients, boo
 }
 
 KERNEL_INLINE bool kernel_evaluate(const struct mls *mls, const struct mls_support *support, int dim, int m,
-                                   bool images, double *scratch, int64_t stride, double *phi, double *dphi)
+                                   double *scratch, int64_t stride, double *phi, double *dphi)
 {
     /* With H pivots may be smaller, but not too small for the normal equations. */
     static const double least_pivot = 1e-9;
@@ -58,18 +57,18 @@ KERNEL_INLINE bool kernel_evaluate(const struct mls *mls, const struct mls_suppo
     struct mls_system system;
     double c[MLS_MAX_BASIS];
     lanes right[MLS_MAX_BASIS];
-    begin(mls, support, dim, m, images, scratch, stride, &point, &system);
+    begin(mls, support, dim, m, scratch, stride, &point, &system);
     if (!factorise(dim, m, MLS_SAFE_PIVOT, mls->basis == BASIS_MODIFIED ? least_pivot : MLS_SAFE_PIVOT,
                    &system)) {
         return false;
     }
     substitute_unit(m, &system, c);
-    if (!(values(dim, m, c, dphi != NULL, images, &point, right) <= most_defect)) {
+    if (!(values(dim, m, c, dphi != NULL, &point, right) <= most_defect)) {
         return false;
     }
     if (dphi != NULL) {
         substitute(m, &system, right);
-        if (!(gradients(dim, m, right, images, &point) <= most_defect)) {
+        if (!(gradients(dim, m, right, &point) <= most_defect)) {
             return false;
         }
         put_gradients(dim, &point, dphi);
@@ -80,10 +79,8 @@ KERNEL_INLINE bool kernel_evaluate(const struct mls *mls, const struct mls_suppo
     return true;
 }
 
-/* The compiler knows the dimension, the number of monomials, and whether there are images. */
-#define EVALUATE(dim, m)                                                                                     \
-    (support->image == NULL ? kernel_evaluate(mls, support, dim, m, false, scratch, stride, phi, dphi)       \
-                            : kernel_evaluate(mls, support, dim, m, true, scratch, stride, phi, dphi))
+/* The compiler knows the dimension and the number of monomials. */
+#define EVALUATE(dim, m) kernel_evaluate(mls, support, dim, m, scratch, stride, phi, dphi)
 
 ALL_SETS bool mls_kernel(const struct mls *mls, const struct mls_support *support, double *scratch,
                          int64_t stride, double *phi, double *dphi)

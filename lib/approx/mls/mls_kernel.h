@@ -15,8 +15,7 @@ enum mls_row {
     ROW_SLOPE,
     ROW_PHI,
     ROW_GRADIENT,
-    ROW_IMAGE = ROW_GRADIENT + 3,
-    ROW_ORTHOGONAL = ROW_IMAGE + 3, /* mls_orthogonal: MLS_MAX_BASIS rows */
+    ROW_ORTHOGONAL = ROW_GRADIENT + 3, /* mls_orthogonal: MLS_MAX_BASIS rows */
     MLS_ROWS = ROW_ORTHOGONAL + MLS_MAX_BASIS
 };
 

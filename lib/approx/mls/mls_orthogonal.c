@@ -176,7 +176,7 @@ static double restore(int m, int dim, const struct mls_factor *factor, const str
 }
 
 /* The gradients in ROW_GRADIENT, from ROW_SLOPE: their coefficients solve M g_a = e_a - (d_a M) c. */
-static void orthogonal_gradients(int dim, int m, const struct mls_factor *factor, bool images,
+static void orthogonal_gradients(int dim, int m, const struct mls_factor *factor,
                                  const struct mls_point *point)
 {
     lanes coefficient[MLS_MAX_BASIS] = {{0.0}};
@@ -184,12 +184,11 @@ static void orthogonal_gradients(int dim, int m, const struct mls_factor *factor
         double right[MLS_MAX_BASIS] = {0.0}, g[MLS_MAX_BASIS];
         lanes sum[MLS_MAX_BASIS] = {{0.0}};
         for (int64_t j = 0; j < point->padded; j += LANES) {
-            lanes xi[3], p[MLS_MAX_BASIS], image, slope;
+            lanes xi[3], p[MLS_MAX_BASIS], slope;
             load_monomials(dim, m, point, j, xi, p);
-            load_row(point, (images ? ROW_IMAGE : ROW_XI) + a, j, &image);
             load_row(point, ROW_SLOPE, j, &slope);
             for (int k = 0; k < m; k++) {
-                sum[k] += slope * image * p[k];
+                sum[k] += slope * xi[a] * p[k];
             }
         }
         for (int k = 0; k < m; k++) {
@@ -200,30 +199,29 @@ static void orthogonal_gradients(int dim, int m, const struct mls_factor *factor
             coefficient[k][a] = g[k];
         }
     }
-    (void)gradients(dim, m, coefficient, images, point);
+    (void)gradients(dim, m, coefficient, point);
 }
 
 enum mls_verdict mls_orthogonal(const struct mls *mls, const struct mls_support *support, double *scratch,
                                 int64_t stride, double *phi, double *dphi)
 {
     int dim = mls->dim, m = mls_basis_size(mls), rows = dphi != NULL ? dim : 0;
-    bool images = support->image != NULL;
     double worst = 0.0;
     struct mls_point point;
     struct mls_system system;
     struct mls_factor factor;
     switch (m) { /* the compiler knows the dimension and the number of monomials */
     case 3:
-        begin(mls, support, 2, 3, images, scratch, stride, &point, &system);
+        begin(mls, support, 2, 3, scratch, stride, &point, &system);
         break;
     case 4:
-        begin(mls, support, 3, 4, images, scratch, stride, &point, &system);
+        begin(mls, support, 3, 4, scratch, stride, &point, &system);
         break;
     case 6:
-        begin(mls, support, 2, 6, images, scratch, stride, &point, &system);
+        begin(mls, support, 2, 6, scratch, stride, &point, &system);
         break;
     default:
-        begin(mls, support, 3, 10, images, scratch, stride, &point, &system);
+        begin(mls, support, 3, 10, scratch, stride, &point, &system);
     }
     if (!is_conditioned(m, dim, mls->basis == BASIS_MODIFIED, &system, factor.scaling)) {
         return MLS_ILL_CONDITIONED;
@@ -231,7 +229,7 @@ enum mls_verdict mls_orthogonal(const struct mls *mls, const struct mls_support 
     orthogonalise(dim, m, &point, &system, &factor);
     orthogonal_values(m, &factor, &point);
     if (dphi != NULL) {
-        orthogonal_gradients(dim, m, &factor, images, &point);
+        orthogonal_gradients(dim, m, &factor, &point);
     }
     /* Once to refine them, and once to know what is left. */
     for (int pass = 0; pass < 2; pass++) {

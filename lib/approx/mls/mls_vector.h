@@ -179,27 +179,11 @@ KERNEL_INLINE void gather(const struct mls_support *support, int dim, struct mls
     point->scale = largest * support->widen;
 }
 
-/* The same for the images of the neighbours (see mls_support), which their weights follow. */
-KERNEL_INLINE void gather_images(const struct mls_support *support, int dim, struct mls_point *point)
-{
-    double *image = point->row + ROW_IMAGE * point->stride, inverse = 1.0 / point->scale;
-    for (int64_t j = 0; j < support->count; j++) {
-        for (int a = 0; a < dim; a++) {
-            image[a * point->stride + j] = support->image[j * dim + a] * inverse;
-        }
-    }
-    for (int64_t j = support->count; j < point->padded; j++) {
-        for (int a = 0; a < dim; a++) {
-            image[a * point->stride + j] = 2.0;
-        }
-    }
-}
-
 #define WEIGHT_LOOP(formula)                                                                                 \
     for (int64_t j = 0; j < point->padded; j++) {                                                            \
         double relative = 0.0, value, slope_over_r, square = ratio[j] * ratio[j];                            \
         for (int a = 0; a < dim; a++) {                                                                      \
-            relative += seen[a * stride + j] * seen[a * stride + j];                                         \
+            relative += xi[a * stride + j] * xi[a * stride + j];                                             \
         }                                                                                                    \
         relative *= square;                                                                                  \
         formula(relative < 1.0 ? relative : 1.0, &value, &slope_over_r);                                     \
@@ -207,16 +191,13 @@ KERNEL_INLINE void gather_images(const struct mls_support *support, int dim, str
         slope[j] = relative < 1.0 ? slope_over_r * square : 0.0;                                             \
     }
 
-/* Scale the coordinates; set weights, and slopes: grad w = -slope xi / s, with the image in place of xi
- * around corners. */
-KERNEL_INLINE void weigh(enum weight_function function, double widen, int dim, bool images,
-                         struct mls_point *point)
+/* Scale the coordinates; set weights, and slopes: grad w = -slope xi / s. */
+KERNEL_INLINE void weigh(enum weight_function function, double widen, int dim, struct mls_point *point)
 {
     int64_t stride = point->stride;
     double *restrict xi = point->row, *restrict ratio = point->row + ROW_RATIO * stride;
     double *restrict weight = point->row + ROW_WEIGHT * stride, *restrict slope =
                                                                     point->row + ROW_SLOPE * stride;
-    const double *seen = images ? point->row + ROW_IMAGE * stride : xi;
     double inverse = 1.0 / point->scale, relative_scale = point->scale / widen;
     for (int a = 0; a < dim; a++) {
         for (int64_t j = 0; j < point->padded; j++) {
@@ -286,26 +267,21 @@ KERNEL_INLINE double larger_defect(double worst, double defect)
 
 /* The neighbours and the moment matrix of a point. */
 KERNEL_INLINE void begin(const struct mls *mls, const struct mls_support *support, int dim, int m,
-                         bool images, double *scratch, int64_t stride, struct mls_point *point,
-                         struct mls_system *system)
+                         double *scratch, int64_t stride, struct mls_point *point, struct mls_system *system)
 {
     *point = (struct mls_point){.count = support->count,
                                 .padded = (support->count + LANES - 1) / LANES * LANES,
                                 .stride = stride,
                                 .row = scratch};
     gather(support, dim, point);
-    if (images) {
-        gather_images(support, dim, point);
-    }
-    weigh(mls->weight, support->widen, dim, images, point);
+    weigh(mls->weight, support->widen, dim, point);
     assemble(dim, m, point, system);
     regularise(mls, dim, m, point->scale, system);
 }
 
-/* Store s d_a phi_j = w_j p_j.g_a - slope_j xi_a p_j.c (image_a in place of xi_a with `images`) in
+/* Store s d_a phi_j = w_j p_j.g_a - slope_j xi_a p_j.c in
  * ROW_GRADIENT + a. Returns the largest defect of sum grad phi p = grad p(0), p linear. */
-KERNEL_INLINE double gradients(int dim, int m, const lanes *coefficient, bool images,
-                               const struct mls_point *point)
+KERNEL_INLINE double gradients(int dim, int m, const lanes *coefficient, const struct mls_point *point)
 {
     double g[3][MLS_MAX_BASIS], worst = 0.0;
     lanes defect[3][4];
@@ -316,15 +292,14 @@ KERNEL_INLINE double gradients(int dim, int m, const lanes *coefficient, bool im
         }
     }
     for (int64_t j = 0; j < point->padded; j += LANES) {
-        lanes xi[3], p[MLS_MAX_BASIS], image[3], weight, slope;
+        lanes xi[3], p[MLS_MAX_BASIS], weight, slope;
         load_monomials(dim, m, point, j, xi, p);
-        load_vector(dim, point, images ? ROW_IMAGE : ROW_XI, j, image);
         load_row(point, ROW_WEIGHT, j, &weight);
         load_row(point, ROW_SLOPE, j, &slope);
         for (int a = 0; a < dim; a++) {
             lanes gradient;
             polynomial(dim, m, g[a], xi, &gradient);
-            gradient = weight * gradient - slope * image[a];
+            gradient = weight * gradient - slope * xi[a];
             store_row(point, ROW_GRADIENT + a, j, &gradient);
             for (int k = 0; k <= dim; k++) {
                 defect[a][k] += gradient * p[k];
