@@ -8,7 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { MOST_ITERATIONS = 100 }; /* of conjugate gradients; */
+enum { MOST_ITERATIONS = 200 }; /* of conjugate gradients; */
 enum { MOST_INNER = 4 };        /* augmentations of contacts in a step */
 enum { MOST_TURNS = 8 };        /* of the search along a direction */
 /* Corrections at a load in which the multipliers of contacts advance in any case; later they do where

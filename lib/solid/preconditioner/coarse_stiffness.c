@@ -81,7 +81,6 @@ enum status preconditioner_assemble(struct preconditioner *p, struct solid_syste
     SCRATCH int64_t *first = NULL;
     SCRATCH double *sums = NULL;
     chunks.count = chunks.count < MOST_SUMS ? chunks.count : MOST_SUMS;
-    body_share_collect(&system->body);
     RETURN_IF_ERROR(ranks_agree(ranks, sum_nodes(p, &system->body, &chunks, &first, &sums, error), error));
     ranks_gather(ranks, sums, (size_t)entries * sizeof *sums, first);
     memcpy(p->body, sums, (size_t)entries * sizeof *sums);

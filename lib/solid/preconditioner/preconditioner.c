@@ -31,6 +31,7 @@ static enum status build_inverse(struct solid_system *system, struct preconditio
 {
     RETURN_IF_ERROR(inverse_stiffness_factor(system, &p->factor, error));
     RETURN_IF_ERROR(NEW_ARRAY(&p->at_rest, system->node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&p->rotation, system->node_count * system->dim * system->dim, error));
     system_relaxation_mass(system, true, p->at_rest);
     return STATUS_OK;
 }
@@ -100,8 +101,8 @@ void preconditioner_free(struct preconditioner *p)
     inverse_factor_free(&p->factor);
     stiffness_factor_free(&p->elements);
     coarse_rows_free(&p->rows);
-    FREE_ALL(p->vector, p->force, p->at_rest, p->stiffness, p->mass, p->body, p->active, p->normal, p->sticks,
-             p->weight, p->stiffness_factor, p->amount, p->contacts);
+    FREE_ALL(p->vector, p->force, p->at_rest, p->rotation, p->stiffness, p->mass, p->body, p->active,
+             p->normal, p->sticks, p->weight, p->stiffness_factor, p->amount, p->contacts);
     *p = (struct preconditioner){0};
 }
 
@@ -161,9 +162,11 @@ static void smooth(struct preconditioner *p, const double *x, double *y)
         divide_by_mass(p, x, y);
         return;
     }
-    inverse_factor_apply(&p->factor, x, p->vector);
+    preconditioner_turn(p, true, x, y);
+    inverse_factor_apply(&p->factor, y, p->vector);
     divide_by_mass(p, p->vector, p->vector);
     inverse_factor_apply_transposed(&p->factor, p->vector, y);
+    preconditioner_turn(p, false, y, y);
 }
 
 void preconditioner_project(struct preconditioner *p, double *x)
@@ -218,7 +221,11 @@ enum status preconditioner_state(struct preconditioner *p, const struct state *s
         {"active", STATE_FLAGS, p->active, p->contact_node_count},
         {"normal", STATE_NUMBERS, p->normal, p->contact_node_count * p->dim},
     };
+    const struct state_value rotation = {"rotation", STATE_NUMBERS, p->rotation,
+                                         p->rotation != NULL ? p->node_count * p->dim * p->dim : 0};
     const struct state_value sticks = {"sticks", STATE_NUMBERS, p->sticks, p->contact_node_count};
     RETURN_IF_ERROR(state_visit(state, "preconditioner", values, sizeof values / sizeof *values, error));
+    RETURN_IF_ERROR(p->rotation != NULL ? state_visit(state, "preconditioner", &rotation, 1, error)
+                                        : STATUS_OK);
     return p->sticks != NULL ? state_visit(state, "preconditioner", &sticks, 1, error) : STATUS_OK;
 }

@@ -8,8 +8,9 @@
  *   M^-1 = P (B + Z A^-1 Z^T) P
  *
  * with the orthogonal projection P onto motions that meet the homogeneous conditions: P f = f - G^T (G
- * G^T)^-1 G f with the rows G. With smoothed cells B = L^T D^-1 L, with the factor L of inverse_stiffness.h
- * and D by how much the stiffness around each node has changed since rest; otherwise B = D^-1. For linear
+ * G^T)^-1 G f with the rows G. With smoothed cells B = R L^T D^-1 L R^T, with the factor L of
+ * inverse_stiffness.h, the rotations R of the nodes since rest, and D by how much the stiffness around each
+ * node has changed since; otherwise B = D^-1. For linear
  * systems this is a two-level additive preconditioner with deflated constraints. Any positive definite A is
  * admissible. Plane bodies without contacts have the inverse of stiffness_factor.h alone, up to some size.
  */
@@ -26,6 +27,7 @@ struct preconditioner {
     int64_t node_count;
     double *stiffness;                /* node_count: that D was set from, N/m (2D: N/m2), */
     double *at_rest;                  /* and with an inverse factor what it is at rest */
+    double *rotation;                 /* with an inverse factor, node_count * dim * dim: R of each node */
     double *mass;                     /* node_count: D, N/m (2D: N/m2); with an inverse factor a number */
     struct inverse_factor factor;     /* node_count 0: none */
     struct stiffness_factor elements; /* in place of both, or none */

@@ -15,3 +15,11 @@ void preconditioner_add_contacts(struct preconditioner *preconditioner, const st
  * evaluation of a body of smoothed cells. */
 MUST_CHECK enum status preconditioner_assemble(struct preconditioner *preconditioner,
                                                struct solid_system *system, struct error *error);
+
+/* Set the rotations of the nodes: those of the mean of F over the cells around each, at the last evaluation
+ * of a body of smoothed cells. */
+MUST_CHECK enum status preconditioner_find_rotations(struct preconditioner *preconditioner,
+                                                     const struct body *body, struct error *error);
+
+/* y = R x at each node, or `back` R^T x; x may be y. */
+void preconditioner_turn(const struct preconditioner *preconditioner, bool back, const double *x, double *y);

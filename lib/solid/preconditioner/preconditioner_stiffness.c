@@ -85,18 +85,21 @@ static enum status measure_by_differences(struct preconditioner *p, struct solid
 enum status preconditioner_measure(struct preconditioner *p, struct solid_system *system, const double *u,
                                    int64_t *evaluations, struct error *error)
 {
-    if (p->size == 0 && p->elements.body == NULL) {
+    if (p->size == 0 && p->elements.body == NULL && p->rotation == NULL) {
         return STATUS_OK;
     }
     NEW_SCRATCH(double, at_u, p->node_count * p->dim, error);
     system_resist(system, u, at_u);
     ++*evaluations;
+    body_share_collect(&system->body);
+    if (p->rotation != NULL) {
+        RETURN_IF_ERROR(preconditioner_find_rotations(p, &system->body, error));
+    }
     if (p->elements.body != NULL) {
-        body_share_collect(&system->body);
         RETURN_IF_ERROR(stiffness_factor_take(system, p->stiffness, &p->elements, error));
-    } else if (system->body.smoothed) {
+    } else if (p->size > 0 && system->body.smoothed) {
         RETURN_IF_ERROR(preconditioner_assemble(p, system, error));
-    } else {
+    } else if (p->size > 0) {
         RETURN_IF_ERROR(measure_by_differences(p, system, u, at_u, error));
         *evaluations += p->size;
     }
