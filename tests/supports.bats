@@ -107,6 +107,18 @@ drift() {
     try '13: [support ground]: stiffness: unknown key: allowed are facets, normal, tangential, damping' 'facets = ymin\nstiffness = 1'
 }
 
+# All facets move as x does in (1.1, .2; 0, 1): the skin on the sides xmax and ymax of a block at nu = 0 has E t (1 + .2^2 - 1)^2 / 8 and E t (1.1^2 - 1)^2 / 8.
+@test "a membrane on sides whose displacement varies: its energy is exact" {
+    dim=2 turn=0
+    table 4
+    printf '%s\n' '0 0 0 0' '.1 0 .01 0' '0 .1 .02 0' '.1 .1 .03 0' | awk '{ for (i = -1; i < 2; i++) for (j = -1; j < 2; j++) {
+        x = $1 + i * .05; y = $2 + j * .05; if (!((x, y) in seen)) print x, y, .1 * x + .2 * y, 0; seen[x, y] = 1 } }' > shear.tsv
+    scene quasi-static '[displacement a]\nfacets = *\ntable = shear.tsv\nunit = m' '[output]\nenergy = yes' > bare.scene
+    { cat bare.scene; printf '[membrane skin]\nfacets = xmax, ymax\nthickness = 1e-3\nE = 1e6\nnu = 0\n'; } > skin.scene
+    for run in bare skin; do mtled $run.scene table.mts | mts print energy; done |
+        awk '{ e[NR] = $1 } END { want = 1e3 * .1 / 8 * (.04^2 + .21^2); print e[2] - e[1], want; exit !(((e[2] - e[1]) / want - 1)^2 < 1e-16) }'
+}
+
 @test "a membrane: the balance in time; what is wrong with it is one line" {
     cat > ring.geo << 'END'
 Point(1)={0,0,0}; Point(2)={50,0,0}; Point(3)={-50,0,0}; Point(4)={100,0,0}; Point(5)={-100,0,0};

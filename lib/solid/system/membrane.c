@@ -33,83 +33,14 @@ static double invert_metric(int n, double *metric)
     return 0.5 * sqrt(determinant);
 }
 
-/* u[dim]: the displacement of corner c: that of the boundary there, but for what is prescribed. */
-static void corner_displacement(const struct membrane *membrane, int32_t c, const double *field, double *u)
+/* The edges of facet f from its first corner. */
+static void edges_at(const struct membrane *membrane, int64_t f, double edge[2][3])
 {
     int dim = membrane->dim;
-    double free[3];
-    struct average average = average_of_boundary(&membrane->corners, c);
-    average_take(&average, dim, field, free);
-    memcpy(u, free, (size_t)dim * sizeof *u);
-    for (int64_t k = (int64_t)c * dim; k < (int64_t)(c + 1) * dim && membrane->held[k] >= 0; k++) {
-        const double *direction = membrane->rows->direction + membrane->held[k] * dim;
-        double off = constraint_rows_value(membrane->rows, membrane->held[k], field) -
-                     vector_dot(dim, direction, free);
-        add_scaled(dim, off, membrane->along + k * dim, u);
-    }
-}
-
-/* The transpose: force += that of `on` on corner c. */
-static void spread_corner(const struct membrane *membrane, int32_t c, const double *on, double *force)
-{
-    int dim = membrane->dim;
-    double rest[3], part[3];
-    memcpy(rest, on, (size_t)dim * sizeof *rest);
-    for (int64_t k = (int64_t)c * dim; k < (int64_t)(c + 1) * dim && membrane->held[k] >= 0; k++) {
-        const double *direction = membrane->rows->direction + membrane->held[k] * dim;
-        struct average average = constraint_rows_average(membrane->rows, membrane->held[k]);
-        double amount = vector_dot(dim, membrane->along + k * dim, on);
-        memset(part, 0, sizeof part);
-        add_scaled(dim, amount, direction, part);
-        add_scaled(dim, -amount, direction, rest);
-        average_spread(&average, dim, part, force);
-    }
-    struct average average = average_of_boundary(&membrane->corners, c);
-    average_spread(&average, dim, rest, force);
-}
-
-/* The edges of facet f from its first corner, of points at x[corner * dim] = X + the corner's displacement.
- */
-static void edges_at(const struct membrane *membrane, const double *X, const double *u, int64_t f,
-                     double edge[2][3])
-{
-    int dim = membrane->dim;
-    double x[3][3];
-    for (int k = 0; k < dim; k++) {
-        int32_t c = membrane->corner[f * dim + k];
-        corner_displacement(membrane, c, u, x[k]);
-        add_scaled(dim, 1.0, X + (int64_t)membrane->corners.node[c] * dim, x[k]);
-    }
+    const int32_t *corner = membrane->corner + f * dim;
     for (int k = 1; k < dim; k++) {
-        vector_subtract(dim, x[k], x[0], edge[k - 1]);
-    }
-}
-
-/* Add row r, with the direction a, to those that prescribe corner c, unless it depends on them. The vectors b
- * lie in the span of the directions: each loses its part along a, b_j -= (b_j . a) b. */
-static void hold_corner(struct membrane *membrane, int32_t c, int64_t r)
-{
-    int dim = membrane->dim, count = 0;
-    int64_t *held = membrane->held + (int64_t)c * dim;
-    double *along = membrane->along + (int64_t)c * dim * dim, rest[3], part[3] = {0.0};
-    const double *a = membrane->rows->direction + r * dim;
-    for (; count < dim && held[count] >= 0; count++) {
-        const double *before = membrane->rows->direction + held[count] * dim;
-        add_scaled(dim, vector_dot(dim, before, a), along + count * dim, part);
-    }
-    for (int i = 0; i < dim; i++) {
-        rest[i] = a[i] - part[i];
-    }
-    double length2 = vector_dot(dim, rest, rest);
-    if (count == dim || length2 < 0.01) {
-        return;
-    }
-    held[count] = r;
-    for (int i = 0; i < dim; i++) {
-        along[count * dim + i] = rest[i] / length2;
-    }
-    for (int k = 0; k < count; k++) {
-        add_scaled(dim, -vector_dot(dim, along + k * dim, a), along + count * dim, along + k * dim);
+        vector_subtract(dim, membrane->place + (int64_t)corner[k] * dim,
+                        membrane->place + (int64_t)corner[0] * dim, edge[k - 1]);
     }
 }
 
@@ -123,24 +54,18 @@ enum status membrane_build(const struct face_table *table, const struct facet_se
                                   .facet_count = set->count,
                                   .nu = nu,
                                   .tension = law->prestress / stiffness,
-                                  .curve = law->curve,
-                                  .rows = rows};
+                                  .curve = law->curve};
     RETURN_IF_ERROR(boundary_corners_build(table, set, &membrane->corners, error));
+    RETURN_IF_ERROR(corner_values_build(table, &membrane->corners, rows, &membrane->values, error));
     RETURN_IF_ERROR(NEW_ARRAY(&membrane->corner, set->count * dim, error));
     RETURN_IF_ERROR(NEW_ARRAY(&membrane->metric, set->count * n * n, error));
     RETURN_IF_ERROR(NEW_ARRAY(&membrane->weight, set->count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&membrane->held, membrane->corners.count * dim, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&membrane->along, membrane->corners.count * dim * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&membrane->place, membrane->corners.count * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&membrane->on, membrane->corners.count * dim, error));
     NEW_SCRATCH(int32_t, number, table->node_count, error);
     memset(number, -1, (size_t)table->node_count * sizeof *number);
-    memset(membrane->held, -1, (size_t)membrane->corners.count * (size_t)dim * sizeof *membrane->held);
     for (int64_t c = 0; c < membrane->corners.count; c++) {
         number[membrane->corners.node[c]] = (int32_t)c;
-    }
-    for (int64_t r = 0; r < rows->count; r++) {
-        if (number[rows->node[r]] >= 0) {
-            hold_corner(membrane, number[rows->node[r]], r);
-        }
     }
     for (int64_t f = 0; f < set->count; f++) {
         const int32_t *node = set->facet + f * dim;
@@ -161,7 +86,8 @@ enum status membrane_build(const struct face_table *table, const struct facet_se
 void membrane_free(struct membrane *membrane)
 {
     boundary_averages_free(&membrane->corners);
-    FREE_ALL(membrane->corner, membrane->held, membrane->along, membrane->metric, membrane->weight);
+    corner_values_free(&membrane->values);
+    FREE_ALL(membrane->corner, membrane->metric, membrane->weight, membrane->place, membrane->on);
     *membrane = (struct membrane){0};
 }
 
@@ -192,18 +118,14 @@ static double stress_of(int n, double nu, double tension, const double *A, const
 }
 
 /* Subtract the forces of facet f, whose edges are d, from those on its corners. */
-static void pull_corners(const struct membrane *membrane, int64_t f, double d[2][3], const double *stress,
-                         double *force)
+static void pull_corners(const struct membrane *membrane, int64_t f, double d[2][3], const double *stress)
 {
     int dim = membrane->dim, n = dim - 1;
-    double on[3][3] = {{0.0}};
+    const int32_t *corner = membrane->corner + f * dim;
     for (int i = 0; i < n * n; i++) {
         double amount = membrane->weight[f] * stress[i];
-        add_scaled(dim, -amount, d[i % n], on[i / n + 1]);
-        add_scaled(dim, amount, d[i % n], on[0]);
-    }
-    for (int k = 0; k < dim; k++) {
-        spread_corner(membrane, membrane->corner[f * dim + k], on[k], force);
+        add_scaled(dim, -amount, d[i % n], membrane->on + (int64_t)corner[i / n + 1] * dim);
+        add_scaled(dim, amount, d[i % n], membrane->on + (int64_t)corner[0] * dim);
     }
 }
 
@@ -212,10 +134,15 @@ double membrane_pull(const struct membrane *membrane, const double *X, double fa
 {
     int dim = membrane->dim, n = dim - 1;
     double energy = 0.0;
+    for (int64_t c = 0; c < membrane->corners.count; c++) {
+        corner_values_take(&membrane->values, c, u, membrane->place + c * dim);
+        add_scaled(dim, 1.0, X + (int64_t)membrane->corners.node[c] * dim, membrane->place + c * dim);
+    }
+    memset(membrane->on, 0, (size_t)(membrane->corners.count * dim) * sizeof *membrane->on);
     for (int64_t f = 0; f < membrane->facet_count; f++) {
         const double *A = membrane->metric + f * n * n;
         double d[2][3], rest[4], metric[4], stress[4];
-        edges_at(membrane, X, u, f, d);
+        edges_at(membrane, f, d);
         metric_of(n, dim, d, metric);
         for (int i = 0; i < n * n; i++) {
             rest[i] = A[i];
@@ -223,9 +150,10 @@ double membrane_pull(const struct membrane *membrane, const double *X, double fa
         (void)invert_metric(n, rest);
         energy += membrane->weight[f] *
                   stress_of(n, membrane->nu, factor * membrane->tension, A, metric, rest, stress);
-        if (force != NULL) {
-            pull_corners(membrane, f, d, stress, force);
-        }
+        pull_corners(membrane, f, d, stress);
+    }
+    for (int64_t c = 0; force != NULL && c < membrane->corners.count; c++) {
+        corner_values_spread(&membrane->values, c, membrane->on + c * dim, force);
     }
     return energy;
 }

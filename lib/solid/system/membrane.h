@@ -1,11 +1,9 @@
 /* A membrane on facets of a body, without bending: St. Venant-Kirchhoff material in plane stress in the plane
- * of each facet, whose corners move with the boundary. In 2D a strip in plane strain along the third axis.
- * Where rows of the conditions prescribe a corner's node, the corner has their averages: the tension of a
- * membrane that ends there acts on the rows, not on a point of the body. */
+ * of each facet. In 2D a strip in plane strain along the third axis. */
 #pragma once
 
 #include "approx/shape/boundary.h"
-#include "solid/constraint/constraint.h"
+#include "solid/system/corner_values.h"
 
 struct membrane_law {
     double thickness, youngs_modulus, poisson_ratio; /* m, Pa */
@@ -16,11 +14,10 @@ struct membrane_law {
 struct membrane {
     int dim;
     int64_t facet_count;
-    struct boundary_averages corners;   /* values at the corners: boundary_corners_build */
-    int32_t *corner;                    /* facet_count * dim: the entry of each corner in `corners` */
-    const struct constraint_rows *rows; /* the caller's; must outlive this */
-    int64_t *held; /* corners.count * dim: rows that prescribe the corner, -1 after the last */
-    double *along; /* corners.count * dim^2: vector b_k of each, with b_k . a_j = (j == k) for directions a */
+    struct boundary_averages corners; /* values at the corners: boundary_corners_build */
+    int32_t *corner;                  /* facet_count * dim: the entry of each corner in `corners` */
+    struct corner_values values;      /* their displacements */
+    double *place, *on;               /* scratch: place of each corner, m, and force on it */
     double *metric; /* facet_count * (dim - 1)^2: inverse of that of the edges at rest, 1/m2 */
     double *weight; /* facet_count: E thickness area / (1 - nu^2) at rest, J (2D: J/m) */
     double nu;
