@@ -14,9 +14,17 @@ static const double moves_on = 1.1, least_growth = 1e-3;
 static const double most_length = 0.1;
 static const int64_t most_vain = 12; /* corrections in which the error has not halved */
 
+/* Some units in the last place of positions, m. */
+static double round_off(const struct newton *n)
+{
+    return 32.0 * DBL_EPSILON * n->body_size;
+}
+
+/* Where nothing acts yet, contacts lack round-off alone. */
 static bool contacts_lack(const struct newton *n)
 {
-    return system_contacts_give_way(n->system, n->u, n->report->move, n->options->tolerance);
+    return n->report->move > round_off(n) &&
+           system_contacts_give_way(n->system, n->u, n->report->move, n->options->tolerance);
 }
 
 /* What the nodal pressures may lack. */
@@ -46,12 +54,6 @@ void newton_augment(struct newton *n)
         (void)newton_evaluate(n, n->u, &n->at_u);
         preconditioner_follow(&n->preconditioner, n->system);
     }
-}
-
-/* Some units in the last place of positions, m. */
-static double round_off(const struct newton *n)
-{
-    return 32.0 * DBL_EPSILON * n->body_size;
 }
 
 void newton_estimate(struct newton *n)
