@@ -83,6 +83,17 @@ in_space() {
     rows energy u.dat | awk '{ if ($7 ^ 2 > worst) worst = $7 ^ 2 } END { print; exit !(worst < 1e-7 && $6 > 19.99) }'
 }
 
+@test "a block between a floor and a lid that meets it later is at rest until then" {
+    printf '9 .051\n-3 .051\n' > lid.tsv
+    for seed in 1 2 3; do
+        cloud -d 2 -k jittered -n 6 --seed $seed --jitter 0.12 --box 0,0.1,0,0.05 2> note | shapefn > block.mts 2> note
+        on_floor quasi-static 0.3 | sed 's/^E = .*/E = 1e5/; s/^nu = .*/nu = 0.4/' > later.scene
+        printf '[contact lid]\nfacets = ymax\nrigid = lid.tsv\nunit = m\nside = left\nfriction = 0.3\ntranslation = 0, -.005\ncurve = linear\n' >> later.scene
+        mtled -q later.scene block.mts > u.dat
+        rows reactions u.dat | awk '{ x += $1; y += $2; if ($2 > 0) up = $2 } END { print x, y, up; exit !(up > 1200 && x * x + y * y < 1e-6 * up * up) }'
+    done
+}
+
 @test "Cattaneo: of two round bodies pressed and dragged the middle sticks, with his tractions; processes give the same bytes" {
     cat > two.geo << 'END'
 L = 60; R = 2000; s = R - Sqrt(R * R - L * L);
