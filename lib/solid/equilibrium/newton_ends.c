@@ -1,5 +1,4 @@
 /* The ends of a Newton run: multipliers, the error, progress, and the outcome. */
-#include "base/round_off.h"
 #include "solid/equilibrium/newton_private.h"
 
 #include <float.h>
@@ -15,15 +14,9 @@ static const double moves_on = 1.1, least_growth = 1e-3;
 static const double most_length = 0.1;
 static const int64_t most_vain = 12; /* corrections in which the error has not halved */
 
-/* Whether nothing acts yet but round-off. */
-static bool is_at_rest(const struct newton *n)
-{
-    return n->report->move <= ROUND_OFF * n->body_size;
-}
-
 static bool contacts_lack(const struct newton *n)
 {
-    return !is_at_rest(n) &&
+    return !statics_is_at_rest(n->report, n->body_size) &&
            system_contacts_give_way(n->system, n->u, n->report->move, n->options->tolerance);
 }
 
@@ -70,7 +63,7 @@ void newton_estimate(struct newton *n)
     report->move = fmax(move, n->options->tolerance * n->largest_move);
     double lowest = isinf(n->lowest) ? NEWTON_LEAST_TOLD : fmin(1.0, fmax(n->lowest, NEWTON_LEAST_TOLD));
     double error = newton_longest(n, n->scaled, &report->worst_node) / lowest;
-    bool at_rest = is_at_rest(n) || !(square > 0.0);
+    bool at_rest = statics_is_at_rest(report, n->body_size) || !(square > 0.0);
     report->error = !isfinite(square) ? INFINITY : at_rest ? 0.0 : error / report->move;
 }
 

@@ -6,7 +6,6 @@
 #include "solid/preconditioner/frequency.h"
 #include "solid/preconditioner/preconditioner.h"
 
-#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -247,7 +246,7 @@ static void estimate(struct relaxation *r)
     r->largest_move = fmax(r->largest_move, move);
     r->report->move = fmax(move, r->options->tolerance * r->largest_move);
     move = vector_longest(r->system->dim, r->system->node_count, r->acceleration, &r->report->worst_node);
-    bool at_rest = r->report->move <= DBL_EPSILON * r->body_size; /* moves below round-off are none */
+    bool at_rest = statics_is_at_rest(r->report, r->body_size);
     r->report->error = at_rest ? 0.0 : safety * move / (least * r->report->move);
     r->report->lowest_frequency = sqrt(least);
     r->report->largest_frequency = r->frequency;
@@ -260,7 +259,7 @@ static bool multipliers_hold(struct relaxation *r)
     r->report->penetration = system_contact_miss(r->system);
     r->report->penetration_allowed = system_penetration_allowed(r->report->move);
     return pressures &&
-           (r->augmentations >= most_augmentations ||
+           (r->augmentations >= most_augmentations || statics_is_at_rest(r->report, r->body_size) ||
             !system_contacts_give_way(r->system, r->before, r->report->move, r->options->tolerance));
 }
 

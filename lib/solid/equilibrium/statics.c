@@ -1,6 +1,8 @@
 /* What Newton's method and the relaxation share. */
 #include "solid/equilibrium/statics.h"
 
+#include "base/round_off.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -54,6 +56,11 @@ bool statics_tell(const struct statics_options *options, const struct statics_re
                                 .state = visit,
                                 .run = run};
     return options->progress == NULL || options->progress(options->context, &progress);
+}
+
+bool statics_is_at_rest(const struct statics_report *report, double body_size)
+{
+    return report->move <= ROUND_OFF * body_size;
 }
 
 bool statics_is_away(const struct solid_system *system, const struct statics_report *report, double body_size)

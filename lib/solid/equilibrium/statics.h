@@ -78,6 +78,9 @@ void statics_give_frame(const struct statics_options *options, double share, con
 bool statics_tell(const struct statics_options *options, const struct statics_report *report, double share,
                   const double *u, state_function *visit, void *run);
 
+/* Whether round-off alone has moved the body: nothing acts on it yet. */
+bool statics_is_at_rest(const struct statics_report *report, double body_size);
+
 /* Whether the body has moved farther than any equilibrium is. */
 bool statics_is_away(const struct solid_system *system, const struct statics_report *report,
                      double body_size);
