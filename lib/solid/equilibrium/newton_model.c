@@ -213,6 +213,7 @@ bool newton_solve_model(struct newton *n, double of_last, double share, double r
         continue_last(n, of_last);
     }
     double length = newton_longest(n, n->step, NULL);
+    double none = (statics_is_at_rest(n->report, n->body_size) ? ROUND_OFF : DBL_EPSILON) * n->body_size;
     for (int k = 0; k < MOST_ITERATIONS; k++) {
         double now = scale_gradient(n);
         n->square = k == 0 ? now : n->square;
@@ -223,7 +224,7 @@ bool newton_solve_model(struct newton *n, double of_last, double share, double r
             touch(n, 0.0);
             now = mark = scale_gradient(n);
         }
-        bool round_off = newton_longest(n, n->scaled, NULL) <= DBL_EPSILON * n->body_size;
+        bool round_off = newton_longest(n, n->scaled, NULL) <= none;
         if (!(now > share * share * n->square) || round_off) {
             note_products(n, k, now / n->square, &lanczos);
             return true;
