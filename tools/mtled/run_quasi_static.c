@@ -187,11 +187,16 @@ static void end_step(void *context, int64_t number, double time, const double *u
     }
 }
 
-/* Note an error of the steps of time that shows. */
-static void judge_steps(const struct run *run)
+/* Note an error of the steps of time that shows: of the stress, and beside what the iteration may leave. */
+static void judge_steps(const struct run *run, const struct statics_report *report)
 {
-    double error = body_time_error(&run->model->system.body);
-    if (error > error_noted) {
+    const struct body *body = &run->model->system.body;
+    double error = body_time_error(body), shear_modulus = 0.0;
+    double left = run->scene->solver.tolerance * report->move / system_node_spacing(&run->model->system);
+    for (int64_t m = 0; m < body->material_count; m++) {
+        shear_modulus = fmax(shear_modulus, body->materials[m].shear_modulus);
+    }
+    if (error > error_noted && error * body->prony.time_error.stress > shear_modulus * left) {
         tool_note(
             run->tool,
             "%s: the steps of time make an error of up to about %.2g of the largest stress: more of them "
@@ -236,7 +241,7 @@ void run_quasi_static(struct run *run)
     run_folds_check(run, run->u, report.load, true);
     run_stability_check(run, report.load);
     judge(run, &report);
-    judge_steps(run);
+    judge_steps(run, &report);
     put_error(run);
     if (run->verbose) {
         fprintf(stderr,
