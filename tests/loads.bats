@@ -204,6 +204,8 @@ immersed() {
     for section in 'traction a' 'contact d'; do
         with "/^\[$section/,/^facets/s/^facets = .*/facets = roof/"
         refused 2 "[$section]: the mesh has no facet group 'roof'; present: " mtled edited.scene square.mts
+        sed -i 's/roof/*, ymax/' edited.scene
+        refused 2 "[$section]: *, the whole boundary, stands alone" mtled edited.scene square.mts
     done
     with 's/^nodes = corner/nodes = edge/'
     refused 2 "[force c]" mtled edited.scene square.mts

@@ -151,7 +151,7 @@ modules() { awk -F '[|`]' -v head="| module of \`$1\` |" 'index($0, head) == 1 {
 
 @test "every section that a tool writes has a line in lib/README.md" {
     cloud -d 2 -k regular -n 4 --box 0,1,0,1 | shapefn 2> note > table.mts
-    printf '[scene]\ndim = 2\nanalysis = quasi-static\n[material all]\nregion = body\nE = 3000\nnu = 0.4\nrho = 1000\n' > all.scene
+    printf '[scene]\ndim = 2\nanalysis = quasi-static\n[material all]\nregion = body\nE = 3000\nnu = 0.4\nrho = 1000\nfibre = 1, 0\nactive = 1\ncurve = linear\n' > all.scene
     printf '[displacement low]\nfacets = ymin\ncomponents = 0, 0\n[displacement high]\nfacets = ymax\ncomponents = 0, -0.01\n' >> all.scene
     printf '[contact wall]\nfacets = xmax\nrigid = wall.tsv\nunit = m\nside = left\n' >> all.scene
     printf '[output]\nframes = 1\nstress = yes\nstrain = yes\npressure = yes\nvolume_ratio = yes\nfibre = yes\nreactions = yes\nmoments = yes\ngaps = yes\nenergy = yes\n' >> all.scene

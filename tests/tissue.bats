@@ -30,6 +30,8 @@ norm() {
 
 @test "a table of fibres that is wrong, or leaves a part of the body out, is refused" {
     cloud -d 3 -k regular -n 4 --box -0.5,0.5,-0.5,0.5,0,1 | shapefn > cube.mts 2> note
+    block quasi-static | sed 's/dim = 2/dim = 3/; $a[output]\nfibre = yes' > none.scene
+    refused 2 'none.scene: [output]: fibre: no material has fibres' mtled none.scene cube.mts
     scene 'fibres = f.tsv\nunit = m' > f.scene
     table() { awk "BEGIN { for (i = 0; i < 216; i++) print i % 6 / 5 - 0.5, int(i / 6) % 6 / 5 - 0.5, int(i / 36) / 5, $1 }" > f.tsv; }
     table '1, 1, i == 9 ? "nan" : 1'

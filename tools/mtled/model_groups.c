@@ -34,6 +34,11 @@ enum status model_facets(struct model *model, const struct scene_label *label, c
         *set = (struct facet_set){boundary->count, boundary->node};
         return STATUS_OK;
     }
+    for (int64_t i = 0; i < names->count; i++) {
+        if (strcmp(names->names[i], "*") == 0) {
+            return fail(error, STATUS_INPUT, "%s: *, the whole boundary, stands alone", label->where);
+        }
+    }
     if (stream_find(model->stream, "facets") == NULL || stream_find(model->stream, "facets.set") == NULL) {
         return fail(error, STATUS_INPUT, "%s: no named facets: give the mesh physical groups, or run tag",
                     label->where);

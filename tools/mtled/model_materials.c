@@ -142,5 +142,11 @@ enum status model_materials(struct model *model, struct error *error)
             RETURN_IF_ERROR(model_fibres(model, m, error));
         }
     }
-    return STATUS_OK;
+    bool none = true;
+    for (int64_t q = 0; q < points; q++) {
+        none = none && list->items[list->of_point[q]].fibre == NULL;
+    }
+    return none && scene->output.fibre
+               ? fail(error, STATUS_INPUT, "%s: [output]: fibre: no material has fibres", scene->path)
+               : STATUS_OK;
 }
