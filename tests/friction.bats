@@ -95,9 +95,9 @@ in_space() {
         { sed '/^friction/d; s/^gaps.*/&\nframes = 5/' later.scene; printf '[displacement side]\nfacets = xmin\ncomponents = 0, free\n[solver]\nmethod = relaxation\n'; } > free.scene
         mtled -q free.scene block.mts > u.dat
         # In time, and away from the origin, where round-off is more.
-        cloud -d 2 -k jittered -n 6 --seed $seed --jitter 0.12 --box 1,1.1,-0.7,-0.65 2> note | shapefn > there.mts 2> note
-        printf '0 -0.7\n9 -0.7\n' > floor_there.tsv
-        printf '9 -0.649\n0 -0.649\n' > lid_there.tsv
+        cloud -d 2 -k jittered -n 6 --seed $seed --jitter 0.12 --box 1000,1000.1,-700,-699.95 2> note | shapefn > there.mts 2> note
+        printf '0 -700\n1009 -700\n' > floor_there.tsv
+        printf '1009 -699.949\n0 -699.949\n' > lid_there.tsv
         sed 's/^analysis.*/&\nduration = 10/; s/^rho/prony = .5 2\n&/; s/linear/late.tsv/; s/floor.tsv/floor_there.tsv/; s/lid.tsv/lid_there.tsv/' later.scene > there.scene
         timeout 30 mtled -q there.scene there.mts > u.dat
     done

@@ -16,7 +16,7 @@ static const int64_t most_vain = 12; /* corrections in which the error has not h
 
 static bool contacts_lack(const struct newton *n)
 {
-    return !statics_is_at_rest(n->report, n->body_size) &&
+    return !statics_is_at_rest(n->report, n->reach) &&
            system_contacts_give_way(n->system, n->u, n->report->move, n->options->tolerance);
 }
 
@@ -52,7 +52,7 @@ void newton_augment(struct newton *n)
 /* Some units in the last place of positions, m. */
 static double round_off(const struct newton *n)
 {
-    return 32.0 * DBL_EPSILON * n->body_size;
+    return 32.0 * DBL_EPSILON * n->reach;
 }
 
 void newton_estimate(struct newton *n)
@@ -63,7 +63,7 @@ void newton_estimate(struct newton *n)
     report->move = fmax(move, n->options->tolerance * n->largest_move);
     double lowest = isinf(n->lowest) ? NEWTON_LEAST_TOLD : fmin(1.0, fmax(n->lowest, NEWTON_LEAST_TOLD));
     double error = newton_longest(n, n->scaled, &report->worst_node) / lowest;
-    bool at_rest = statics_is_at_rest(report, n->body_size) || !(square > 0.0);
+    bool at_rest = statics_is_at_rest(report, n->reach) || !(square > 0.0);
     report->error = !isfinite(square) ? INFINITY : at_rest ? 0.0 : error / report->move;
 }
 

@@ -1,6 +1,7 @@
 /* What Newton's method and the relaxation share. */
 #include "solid/equilibrium/statics.h"
 
+#include "base/box.h"
 #include "base/round_off.h"
 
 #include <math.h>
@@ -58,9 +59,19 @@ bool statics_tell(const struct statics_options *options, const struct statics_re
     return options->progress == NULL || options->progress(options->context, &progress);
 }
 
-bool statics_is_at_rest(const struct statics_report *report, double body_size)
+double statics_reach(const struct solid_system *system)
 {
-    return report->move <= ROUND_OFF * body_size;
+    struct box box = box_of(system->dim, system->node_count, system->X);
+    double reach = box_diagonal(&box);
+    for (int k = 0; k < box.dim && system->contact_count > 0; k++) {
+        reach = fmax(reach, fmax(fabs(box.low[k]), fabs(box.high[k])));
+    }
+    return reach;
+}
+
+bool statics_is_at_rest(const struct statics_report *report, double reach)
+{
+    return report->move <= ROUND_OFF * reach;
 }
 
 bool statics_is_away(const struct solid_system *system, const struct statics_report *report, double body_size)

@@ -78,8 +78,12 @@ void statics_give_frame(const struct statics_options *options, double share, con
 bool statics_tell(const struct statics_options *options, const struct statics_report *report, double share,
                   const double *u, state_function *visit, void *run);
 
+/* The length by whose round-off a body at rest moves, m: its size; with contacts, which are found by places,
+ * at least the largest coordinate. */
+double statics_reach(const struct solid_system *system);
+
 /* Whether round-off alone has moved the body: nothing acts on it yet. */
-bool statics_is_at_rest(const struct statics_report *report, double body_size);
+bool statics_is_at_rest(const struct statics_report *report, double reach);
 
 /* Whether the body has moved farther than any equilibrium is. */
 bool statics_is_away(const struct solid_system *system, const struct statics_report *report,
