@@ -153,28 +153,25 @@ enum status visibility_begin(const struct visibility *visibility, const struct v
     return STATUS_OK;
 }
 
-/* Whether a node is visible from that node of the point's cells by way of which the path is the shortest, if
- * it is not much longer than straight. */
+/* Whether a node is visible from a node of the point's cells, by way of which the path is not much longer
+ * than straight. */
 static enum status look_around(const struct visibility *visibility, int32_t node,
                                struct visibility_work *work, bool *seen, struct error *error)
 {
     const struct cells *cells = &visibility->cells;
     int dim = cells->dim, corners = dim + 1;
-    const double *y = cells->x + (int64_t)node * dim, *bend = NULL;
-    double least = most_detour * vector_distance(dim, work->from, y);
-    for (int64_t i = 0; i < work->cell_count * corners; i++) {
+    const double *y = cells->x + (int64_t)node * dim;
+    double most = most_detour * vector_distance(dim, work->from, y);
+    *seen = false;
+    for (int64_t i = 0; i < work->cell_count * corners && !*seen; i++) {
         int32_t corner = cells->node[(int64_t)work->cell[i / corners] * corners + i % corners];
         const double *by = cells->x + (int64_t)corner * dim;
-        double path = vector_distance(dim, work->from, by) + vector_distance(dim, by, y);
-        if (path < least) {
-            least = path;
-            bend = by;
+        if (vector_distance(dim, work->from, by) + vector_distance(dim, by, y) < most) {
+            RETURN_IF_ERROR(
+                visibility_walk(visibility, by, work->cell, work->cell_count, node, work, seen, error));
         }
     }
-    *seen = false;
-    return bend != NULL
-               ? visibility_walk(visibility, bend, work->cell, work->cell_count, node, work, seen, error)
-               : STATUS_OK;
+    return STATUS_OK;
 }
 
 /* Whether a node is a neighbour; what is known of it is kept for wider supports. */

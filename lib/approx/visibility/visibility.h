@@ -3,9 +3,9 @@
  * A node is visible from a point if the straight segment between them stays within the cells, passing from
  * face to face (visibility: Belytschko, Lu and Gu 1994); so nodes of other connected bodies never are, also
  * where bodies touch or overlap a little. Cells that share only a node are not connected by it; the node
- * itself sees what each of these cells sees. A neighbour is visible, or it is so from that node of the
- * point's cells by way of which the path is the shortest, if the path is hardly longer than straight: along a
- * concave side none is missing. */
+ * itself sees what each of these cells sees. A neighbour is visible, or it is so from a node of the
+ * point's cells by way of which the path is hardly longer than straight: along a concave side few are
+ * missing. */
 #pragma once
 
 #include "approx/cells/cells.h"
