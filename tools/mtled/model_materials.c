@@ -142,11 +142,10 @@ enum status model_materials(struct model *model, struct error *error)
             RETURN_IF_ERROR(model_fibres(model, m, error));
         }
     }
-    bool none = true;
-    for (int64_t q = 0; q < points; q++) {
-        none = none && list->items[list->of_point[q]].fibre == NULL;
+    bool none = scene->output.fibre;
+    for (int64_t q = 0; q < points && none; q++) {
+        none = list->items[list->of_point[q]].fibre == NULL;
     }
-    return none && scene->output.fibre
-               ? fail(error, STATUS_INPUT, "%s: [output]: fibre: no material has fibres", scene->path)
-               : STATUS_OK;
+    return none ? fail(error, STATUS_INPUT, "%s: [output]: fibre: no material has fibres", scene->path)
+                : STATUS_OK;
 }

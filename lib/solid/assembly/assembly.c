@@ -31,7 +31,7 @@ static enum status list_vertices(const struct assembly *input, int32_t **vertex,
     return STATUS_OK;
 }
 
-static enum status build_body(struct assembly *input, struct solid_system *system, struct error *error)
+static enum status build_body(const struct assembly *input, struct solid_system *system, struct error *error)
 {
     const struct material_list *materials = &input->materials;
     SCRATCH int32_t *vertex = NULL;
@@ -180,7 +180,9 @@ enum status assembly_held_faces(const struct assembly *input, int least, bool **
             NEW_SCRATCH(int64_t, face, set->count, error);
             RETURN_IF_ERROR(faces_find(&input->boundary, set->count, set->facet, face, error));
             for (int64_t f = 0; f < set->count; f++) {
-                (*held)[face[f]] = true; /* found: facets of a stream are on the boundary */
+                if (face[f] >= 0) { /* else the condition's averages are an error */
+                    (*held)[face[f]] = true;
+                }
             }
         }
     }

@@ -84,7 +84,7 @@ struct assembly {
         *cell_side; /* of each cell: its side of the interfaces at which supports stop; NULL: none */
     const struct ranks *ranks; /* processes that compute the body together; NULL: one */
 
-    struct material_list materials; /* the caller's to free; assembly adds softer ones, once */
+    struct material_list materials; /* the caller's to free */
     bool pointwise_volume;          /* no nodal volumes */
 
     struct load_curve *curves; /* curve_count; taken over by the system */

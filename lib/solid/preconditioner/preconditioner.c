@@ -218,14 +218,11 @@ enum status preconditioner_state(struct preconditioner *p, const struct state *s
         {"weight", STATE_NUMBERS, p->weight, p->coarse.count * p->coarse.count},
         {"body", STATE_NUMBERS, p->body, p->size * p->size},
         {"elements", STATE_NUMBERS, p->elements.body, p->elements.factor.size},
+        {"rotation", STATE_NUMBERS, p->rotation, p->rotation != NULL ? p->node_count * p->dim * p->dim : 0},
         {"active", STATE_FLAGS, p->active, p->contact_node_count},
         {"normal", STATE_NUMBERS, p->normal, p->contact_node_count * p->dim},
     };
-    const struct state_value rotation = {"rotation", STATE_NUMBERS, p->rotation,
-                                         p->rotation != NULL ? p->node_count * p->dim * p->dim : 0};
     const struct state_value sticks = {"sticks", STATE_NUMBERS, p->sticks, p->contact_node_count};
     RETURN_IF_ERROR(state_visit(state, "preconditioner", values, sizeof values / sizeof *values, error));
-    RETURN_IF_ERROR(p->rotation != NULL ? state_visit(state, "preconditioner", &rotation, 1, error)
-                                        : STATUS_OK);
     return p->sticks != NULL ? state_visit(state, "preconditioner", &sticks, 1, error) : STATUS_OK;
 }

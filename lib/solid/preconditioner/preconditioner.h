@@ -10,9 +10,9 @@
  * with the orthogonal projection P onto motions that meet the homogeneous conditions: P f = f - G^T (G
  * G^T)^-1 G f with the rows G. With smoothed cells B = R L^T D^-1 L R^T, with the factor L of
  * inverse_stiffness.h, the rotations R of the nodes since rest, and D by how much the stiffness around each
- * node has changed since; otherwise B = D^-1. For linear
- * systems this is a two-level additive preconditioner with deflated constraints. Any positive definite A is
- * admissible. Plane bodies without contacts have the inverse of stiffness_factor.h alone, up to some size.
+ * node has changed since; otherwise B = D^-1. For linear systems this is a two-level additive preconditioner
+ * with deflated constraints. Any positive definite A is admissible. Plane bodies without contacts have the
+ * inverse of stiffness_factor.h alone, up to some size.
  */
 #pragma once
 

@@ -91,7 +91,9 @@ enum status preconditioner_measure(struct preconditioner *p, struct solid_system
     NEW_SCRATCH(double, at_u, p->node_count * p->dim, error);
     system_resist(system, u, at_u);
     ++*evaluations;
-    body_share_collect(&system->body);
+    if (system->body.smoothed) {
+        body_share_collect(&system->body);
+    }
     if (p->rotation != NULL) {
         RETURN_IF_ERROR(preconditioner_find_rotations(p, &system->body, error));
     }

@@ -150,7 +150,9 @@ double membrane_pull(const struct membrane *membrane, const double *X, double fa
         (void)invert_metric(n, rest);
         energy += membrane->weight[f] *
                   stress_of(n, membrane->nu, factor * membrane->tension, A, metric, rest, stress);
-        pull_corners(membrane, f, d, stress);
+        if (force != NULL) {
+            pull_corners(membrane, f, d, stress);
+        }
     }
     for (int64_t c = 0; force != NULL && c < membrane->corners.count; c++) {
         corner_values_spread(&membrane->values, c, membrane->on + c * dim, force);
