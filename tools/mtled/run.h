@@ -270,5 +270,9 @@ void run_stability_check(struct run *run, double load);
 /* What was seen, as state of the run. */
 MUST_CHECK enum status run_stability_state(struct run *run, const struct state *state, struct error *error);
 
+/* Note where the body has left a state near equilibrium on the way, unless a fold or the present state's
+ * stability is the verdict. */
+void run_stability_left(const struct run *run);
+
 /* What was seen, into text[size]; empty when all is stable. */
 void run_stability_describe(const struct run *run, char *text, size_t size);

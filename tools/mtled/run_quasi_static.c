@@ -31,6 +31,7 @@ static void judge(struct run *run, const struct statics_report *report)
         run_stability_elliptic(run, 1.0, true);
         run_contacts_penetrate(run, report->move, report->penetration_allowed, true);
         run_folds_judge(run);
+        run_stability_left(run);
         run_contacts_touch(run);
         run_check_lost(run, report->error * report->move);
         run_sliding_judge(run);

@@ -54,17 +54,38 @@ enum status run_stability_state(struct run *run, const struct state *state, stru
     return state_visit(state, "stability", values, sizeof values / sizeof *values, error);
 }
 
+/* Words for a node and a share of the load. */
+static void describe(const struct run *run, int64_t node, double load, char place[96], char when[48])
+{
+    const struct solid_system *system = &run->model->system;
+    point_text(system->dim, system->X + node * system->dim, place);
+    snprintf(when, 48, "at the whole load");
+    if (load < 1.0) {
+        snprintf(when, 48, "at %.4g of the load", load);
+    }
+}
+
+void run_stability_left(const struct run *run)
+{
+    const struct stability *found = &run->model->system.stability;
+    char place[96], when[48];
+    if (found->left && !run->folds.seen && !run->stability.seen) {
+        describe(run, found->left_node, found->left_load, place, when);
+        tool_note(
+            run->tool,
+            "%s: %s the body leaves a state near equilibrium, most of all at %s: it buckles, wrinkles or "
+            "snaps through, and the result may be one of several",
+            run->scene->path, when, place);
+    }
+}
+
 void run_stability_describe(const struct run *run, char *text, size_t size)
 {
     const struct run_stability *stability = &run->stability;
-    const struct solid_system *system = &run->model->system;
-    char place[96], when[48] = "at the whole load";
+    char place[96], when[48];
     text[0] = '\0';
     if (stability->seen) {
-        point_text(system->dim, system->X + stability->node * system->dim, place);
-        if (stability->since < 1.0) {
-            snprintf(when, sizeof when, "at %.4g of the load", stability->since);
-        }
+        describe(run, stability->node, stability->since, place, when);
         snprintf(text, size,
                  "the body folds %s: its equilibrium is not stable, and would buckle or wrinkle, most of all "
                  "at %s",

@@ -11,8 +11,8 @@
 static const double prescribed_spacings = 0.7;
 /* By the body's size: a step moves no node by more than this. */
 static const double most_of_size = 0.1;
-/* The estimated error at which the load grows on; and after an increment whose model had no minimum. */
-static const double error_between = 0.2, error_waiting = 0.01;
+/* The estimated error at which the load grows on after an increment whose model had no minimum. */
+static const double error_waiting = 0.01;
 static const int64_t usual_most_steps = 100000;
 
 /* Set the preconditioner's mass and measure the coarse fields at u, which was evaluated last. */
@@ -48,7 +48,7 @@ static bool goes_on(struct newton *n, struct error *error)
 static bool loads(const struct newton *n)
 {
     return n->load < n->hold && n->uphill == 0 &&
-           (n->slides ? n->rests : n->report->error < (n->waits ? error_waiting : error_between));
+           (n->slides ? n->rests : n->report->error < (n->waits ? error_waiting : NEWTON_ERROR_BETWEEN));
 }
 
 /* The next step: an increment of the load, or a correction. The preconditioner is made anew once the products
@@ -99,6 +99,7 @@ static enum statics_outcome iterate(struct newton *n, struct error *error)
             newton_let_slip(n);
             newton_estimate(n);
         }
+        newton_note_leaving(n);
         if (newton_ends(n, stuck, &outcome) && (outcome != STATICS_CONVERGED || !goes_on(n, error))) {
             return outcome;
         }
@@ -127,6 +128,7 @@ static enum status begin(struct newton *n, struct error *error)
     n->load_change = n->most_change;
     n->hold = statics_load_to_hold(n->options, 0);
     n->rests = true;
+    n->nearest_error = n->pressures_lack = INFINITY;
     return measure(n, error);
 }
 

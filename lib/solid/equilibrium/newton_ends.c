@@ -26,6 +26,11 @@ static double most_lack(const struct newton *n)
     return fmin(NODAL_PRESSURE_LACK, 10.0 * n->options->tolerance);
 }
 
+bool newton_has_pressures(const struct newton *n)
+{
+    return !body_is_limited(&n->system->body) || n->pressures_lack <= most_lack(n);
+}
+
 void newton_augment(struct newton *n)
 {
     if (n->uphill > 0) {
@@ -98,7 +103,7 @@ static bool is_found(struct newton *n, bool vain)
         most = fmax(most, hovers ? most_hovering : round_off(n) / report->move);
     }
     bool rounds = report->error <= (vain ? round_off(n) / report->move : 0.0); /* and so do the pressures */
-    bool pressures = rounds || !body_is_limited(&n->system->body) || n->pressures_lack <= most_lack(n);
+    bool pressures = rounds || newton_has_pressures(n);
     bool contacts = !contacts_lack(n);
     report->penetration = system_contact_miss(n->system);
     report->penetration_allowed = system_penetration_allowed(report->move);

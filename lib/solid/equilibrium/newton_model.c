@@ -234,6 +234,7 @@ bool newton_solve_model(struct newton *n, double of_last, double share, double r
         double most = (radius - length) / newton_longest(n, n->search, NULL);
         double way = lower(n, down, most);
         if (way >= most) {
+            n->falls |= vector_product(n->size, n->search, n->product) < 0.0;
             return false;
         }
         newton_lanczos_add(&lanczos, way, part);

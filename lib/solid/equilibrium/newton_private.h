@@ -52,17 +52,24 @@ struct newton {
     bool gives_way; /* what the contacts lack at u is more than an equilibrium may have */
     bool judged;    /* that, and the stability, are of a state near u */
     double length;  /* of that step at the node that moved most, m; INFINITY: it was cut short */
-    double pressures_lack; /* share of the nodal pressures that the multipliers lack; see body_augment */
+    double pressures_lack; /* share of the nodal pressures that the multipliers lack, see body_augment;
+                            INFINITY: not known at this load */
     double largest_move;   /* so far, of a node, m */
     double best_error;     /* since the load has grown, */
     double best_load;      /* to that, */
     double best_move;      /* the largest displacement then, m, */
     int64_t best_step;     /* and when; the error has not halved since */
+    double *nearest;       /* u of the least error at this load, */
+    double nearest_error;  /* which it is; INFINITY: not near equilibrium */
+    bool falls;            /* since then a model has had no minimum: the stiffness is negative somewhere */
     int64_t corrections;   /* at this load */
     int64_t frames;        /* equilibria reported so far */
     double hold;           /* load of the next one */
     enum status failure;
 };
+
+/* The estimated error at which the load grows on. */
+#define NEWTON_ERROR_BETWEEN 0.2
 
 enum { NEWTON_MOST_ITERATIONS = 500 }; /* of conjugate gradients */
 /* By the largest Rayleigh quotient, about 1: a smaller one is within the round-off of differences of forces.
@@ -137,6 +144,9 @@ bool newton_held_by_friction(const struct newton *n);
  * with the new ones. */
 void newton_augment(struct newton *n);
 
+/* Whether the pressures are those of u, as far as an equilibrium needs. */
+bool newton_has_pressures(const struct newton *n);
+
 /* Estimate the error of u, with the residual of the multipliers that were advanced. */
 void newton_estimate(struct newton *n);
 
@@ -150,6 +160,11 @@ bool newton_ends(struct newton *n, bool stuck, enum statics_outcome *outcome);
  * Until they have, they reduce the residual along it by nothing: their polynomial is 1 at 0, its roots are
  * positive. So there is none once the residual's square, r . M^-1 r, is less than the share of one mode. */
 void newton_judge_stability(struct newton *n);
+
+/* Note in system->stability where the body leaves a state near equilibrium, at the same load, by more than
+ * the error of that state, after a model without a minimum. Not with contacts, by whose changes models have
+ * none. */
+void newton_note_leaving(struct newton *n);
 
 /* ---- newton_state.c: memory, checkpoints, progress and frames ---- */
 

@@ -8,6 +8,8 @@
 
 /* Of the residual's square that is left, by the share of one mode of a pseudo-random one. */
 static const double share_left = 0.1;
+/* A body has left a state near equilibrium where it goes as far from it as this, by the error there. */
+static const double far_by_error = 2.0;
 
 void newton_lanczos_add(struct newton_lanczos *l, double way, double part)
 {
@@ -89,4 +91,32 @@ void newton_judge_stability(struct newton *n)
     report->largest_frequency = sqrt(largest);
     report->lowest_frequency = sqrt(fmax(n->lowest, 0.0));
     (void)newton_evaluate(n, n->u, &n->at_u); /* the last evaluation again */
+}
+
+/* Whether u is near equilibrium, but not at rest. */
+static bool is_near(const struct newton *n)
+{
+    double error = n->report->error;
+    return error > 0.0 && error < NEWTON_ERROR_BETWEEN && newton_has_pressures(n);
+}
+
+void newton_note_leaving(struct newton *n)
+{
+    struct stability *stability = &n->system->stability;
+    if (stability->left || n->system->contact_count > 0) {
+        return;
+    }
+    if (n->falls && isfinite(n->nearest_error)) {
+        for (int64_t i = 0; i < n->size; i++) {
+            n->scaled[i] = n->u[i] - n->nearest[i];
+        }
+        double way = newton_longest(n, n->scaled, &stability->left_node);
+        stability->left = way > far_by_error * n->nearest_error * newton_longest(n, n->nearest, NULL);
+        stability->left_load = statics_load_share(n->system, n->load);
+    }
+    if (n->corrections == 0 || n->report->error < n->nearest_error) {
+        n->nearest_error = is_near(n) ? n->report->error : INFINITY;
+        n->falls = false;
+        memcpy(n->nearest, n->u, (size_t)n->size * sizeof *n->nearest);
+    }
 }

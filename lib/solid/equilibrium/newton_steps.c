@@ -149,6 +149,7 @@ bool newton_take_increment(struct newton *n, double from, double change)
     n->report->loading_steps++;
     n->corrections = n->uphill = 0;
     n->above = 0.0;
+    n->pressures_lack = INFINITY;
     n->judged = n->rests = n->settled = false;
     return true;
 }

@@ -47,10 +47,14 @@ enum status system_state(struct solid_system *system, const struct state *state,
     const struct state_value stiffness = {"stiffness", STATE_NUMBERS, system->penalty_stiffness,
                                           system->penalties.count};
     const struct state_value stability[] = {{"least", STATE_NUMBERS, &system->stability.least, 1},
-                                            {"node", STATE_COUNTS, &system->stability.node, 1}};
+                                            {"node", STATE_COUNTS, &system->stability.node, 1},
+                                            {"left", STATE_FLAGS, &system->stability.left, 1},
+                                            {"left_load", STATE_NUMBERS, &system->stability.left_load, 1},
+                                            {"left_node", STATE_COUNTS, &system->stability.left_node, 1}};
     RETURN_IF_ERROR(state_visit(state, "loads", &factor, 1, error));
     RETURN_IF_ERROR(state_visit(state, "conditions", &stiffness, 1, error));
-    RETURN_IF_ERROR(state_visit(state, "equilibrium", stability, 2, error));
+    RETURN_IF_ERROR(
+        state_visit(state, "equilibrium", stability, sizeof stability / sizeof *stability, error));
     RETURN_IF_ERROR(prony_state(&system->body, state, error));
     for (int64_t c = 0; c < system->contact_count; c++) {
         char prefix[32];

@@ -37,10 +37,14 @@ struct cost {
     double force, loads, contact, constraints;
 };
 
-/* The least eigenvalue of M^-1 K at the last equilibrium, see newton_judge_stability. */
+/* The least eigenvalue of M^-1 K at the last equilibrium, see newton_judge_stability; and what was seen on
+ * the way, see newton_note_leaving. */
 struct stability {
-    double least; /* relative to the largest; negative: unstable; 0: not computed, or below round-off */
-    int64_t node; /* of an unstable state: where its mode is largest */
+    double least;      /* relative to the largest; negative: unstable; 0: not computed, or below round-off */
+    int64_t node;      /* of an unstable state: where its mode is largest */
+    bool left;         /* the body has left a state near equilibrium, */
+    double left_load;  /* at this share of the load, */
+    int64_t left_node; /* where it moves most */
 };
 
 struct condition;
