@@ -158,14 +158,6 @@ static double parse(struct tool *tool)
     return tool_number(tool, "every", 0.0, 1e9, 60.0);
 }
 
-/* Read the stream and remove earlier results. */
-static void read_stream(const struct tool *tool, struct stream *stream)
-{
-    tool_read(tool, tool->operands[1], stream);
-    sections_remove(stream, MADE_WITH_RESULTS, MADE_WITH_RESULTS);
-    run_drop_frames(stream);
-}
-
 /* Build the model, at rest or in the state of a checkpoint. */
 static void prepare(struct run *run)
 {
@@ -237,7 +229,8 @@ int main(int argc, char *argv[])
         .display = {.shown = !tool_given(&tool, "quiet") && process_speaks() && isatty(STDERR_FILENO)}};
     double started = clock_seconds();
     TOOL_TRY(&tool, scene_read(tool.operands[0], &scene, &error));
-    read_stream(&tool, &stream);
+    tool_read(&tool, tool.operands[1], &stream);
+    sections_remove(&stream, MADE_WITH_RESULTS, MADE_WITH_RESULTS); /* earlier ones */
     run_frames_check(&run);
     run.read_seconds = clock_seconds() - started;
     stage_fill(&tool, &stream, "shapefn");

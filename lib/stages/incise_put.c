@@ -245,18 +245,6 @@ static enum status put_fibres(struct stream *stream, int dim, int64_t cell_count
                       vector_attributes(dim, "1", attributes), array_take(fibre), true, error);
 }
 
-/* Remove what later stages have made, of frames as well. */
-static void remove_later(struct stream *stream)
-{
-    sections_remove(stream, MADE_WITH_POINTS, MADE_WITH_RESULTS);
-    for (int64_t i = stream->section_count - 1; i >= 0; i--) {
-        const struct section_kind *kind = section_kind_of(stream->sections[i].name);
-        if (kind != NULL && kind->stage > MADE_WITH_CLOUD) {
-            stream_remove(stream, stream->sections[i].name);
-        }
-    }
-}
-
 enum status cut_body_put(struct cut_body *whole, const bool *kept, struct stream *stream, struct error *error)
 {
     struct division *body = &whole->body;
@@ -278,6 +266,6 @@ enum status cut_body_put(struct cut_body *whole, const bool *kept, struct stream
     RETURN_IF_ERROR(put_facets(whole, stream, error));
     RETURN_IF_ERROR(put(stream, "cells", TYPE_I4, body->cell_count, body->dim + 1, &body->node, error));
     RETURN_IF_ERROR(put(stream, "nodes.x", TYPE_F8, body->node_count, body->dim, &body->x, error));
-    remove_later(stream);
+    sections_remove(stream, MADE_WITH_POINTS, MADE_WITH_RESULTS);
     return put_fibres(stream, body->dim, body->cell_count, &fibre, error);
 }

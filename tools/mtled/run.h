@@ -176,9 +176,6 @@ MUST_CHECK enum status run_frames_sync(const struct run *run, struct error *erro
 /* Whether a section of this name belongs to the frames. */
 bool run_is_of_frames(const char *name);
 
-/* Remove all sections of frames. */
-void run_drop_frames(struct stream *stream);
-
 /* Allocate zeros; exits if there is no memory. */
 double *run_new_values(const struct run *run, int64_t count);
 
@@ -201,9 +198,10 @@ struct instant {
 /* Add the field of parameters u at the nodes, and these. */
 void run_put_field(const struct run *run, const struct instant *instant, const double *u);
 
-/* Append a row, the time and values[count], which are freed, to the table over frames in section `name`. */
-void run_append_row(const struct run *run, const char *name, double time, double *values, int64_t count,
-                    const char *attributes);
+/* Put section `name`, a table of rows x cols values, which are taken; of a frame its time and these values as
+ * the next row of section name.frames, with the attributes of that one. */
+void run_put_table(const struct run *run, const struct instant *instant, const char *name, int64_t rows,
+                   int64_t cols, const char *attributes, double *values);
 
 /* Add the sections reactions and moments, if requested, of the system's last evaluation, at u: a row for each
  * condition; for a frame, a row of reactions.frames and moments.frames. */

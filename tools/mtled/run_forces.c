@@ -14,7 +14,7 @@ struct totals {
     int dim, moment_count; /* components of a force, of a moment */
     const double *about;   /* dim: the point of the moments, m */
     double *force;         /* rows * dim, N (2D: N/m) */
-    double *moment;       /* rows * moment_count, N m (2D: N) */
+    double *moment;        /* rows * moment_count, N m (2D: N) */
 };
 
 /* Add a force on an average. It acts at the average of the deformed positions, as the weights have the sum 1
@@ -126,19 +126,14 @@ static char *attributes_of_rows(const struct run *run, const char *unit, const c
     return attributes;
 }
 
-/* Put section `name`, or a row of `name_of_frames`; takes values[rows * components]. */
+/* Put section `name`, or a row of its table over frames; takes values[rows * components]. */
 static void put_vectors(const struct run *run, const struct instant *instant, const char *name,
-                        const char *name_of_frames, const char *unit, const char *more,
-                        const char *components, int64_t rows, double *values)
+                        const char *unit, const char *more, const char *components, int64_t rows,
+                        double *values)
 {
-    bool in_one_row = instant->frame != FRAME_NONE;
-    int64_t each = (int64_t)strlen(components);
-    SCRATCH char *attributes = attributes_of_rows(run, unit, more, components, rows, in_one_row);
-    if (in_one_row) {
-        run_append_row(run, name_of_frames, instant->time, values, rows * each, attributes);
-    } else {
-        run_put(run, name, rows, each, attributes, values);
-    }
+    SCRATCH char *attributes =
+        attributes_of_rows(run, unit, more, components, rows, instant->frame != FRAME_NONE);
+    run_put_table(run, instant, name, rows, (int64_t)strlen(components), attributes, values);
 }
 
 void run_put_forces(struct run *run, const struct instant *instant)
@@ -157,8 +152,8 @@ void run_put_forces(struct run *run, const struct instant *instant)
     add_conditions(run, &totals);
     add_contacts(run, &totals);
     if (output->reactions) {
-        put_vectors(run, instant, "reactions", "reactions.frames", is_plane ? "N/m" : "N", "",
-                    is_plane ? "xy" : "xyz", rows, totals.force);
+        put_vectors(run, instant, "reactions", is_plane ? "N/m" : "N", "", is_plane ? "xy" : "xyz", rows,
+                    totals.force);
     } else {
         free(totals.force);
     }
@@ -171,8 +166,8 @@ void run_put_forces(struct run *run, const struct instant *instant)
                     instant->frame != FRAME_NONE ? ""
                     : is_plane                   ? " cols=z"
                                                  : " cols=x,y,z");
-        put_vectors(run, instant, "moments", "moments.frames", is_plane ? "N" : "N*m", more,
-                    is_plane ? "z" : "xyz", rows, totals.moment);
+        put_vectors(run, instant, "moments", is_plane ? "N" : "N*m", more, is_plane ? "z" : "xyz", rows,
+                    totals.moment);
     } else {
         free(totals.moment);
     }

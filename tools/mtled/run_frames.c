@@ -196,7 +196,7 @@ void run_frames_write(struct run *run, int64_t number)
         frames->next++;
     }
     for (int64_t i = run->stream->section_count - 1; i >= frames->written; i--) {
-        if (frame_of(run->stream->sections[i].name, &length) != FRAME_NONE) {
+        if (frame_of(run->stream->sections[i].name, &length) >= 0) {
             stream_remove(run->stream, run->stream->sections[i].name);
         }
     }

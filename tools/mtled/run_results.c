@@ -63,17 +63,7 @@ void run_put_frame(void *context, int64_t number, double time, const double *u)
 bool run_is_of_frames(const char *name)
 {
     size_t length;
-    return frame_of(name, &length) != FRAME_NONE || strcmp(name, "reactions.frames") == 0 ||
-           strcmp(name, "moments.frames") == 0 || strcmp(name, "energy.frames") == 0;
-}
-
-void run_drop_frames(struct stream *stream)
-{
-    for (int64_t i = stream->section_count - 1; i >= 0; i--) {
-        if (run_is_of_frames(stream->sections[i].name)) {
-            stream_remove(stream, stream->sections[i].name);
-        }
-    }
+    return frame_of(name, &length) != FRAME_NONE;
 }
 
 /* P F^T / J */
@@ -170,20 +160,26 @@ static void put_point_fields(struct run *run, const struct instant *instant)
     }
 }
 
-void run_append_row(const struct run *run, const char *name, double time, double *values, int64_t count,
-                    const char *attributes)
+void run_put_table(const struct run *run, const struct instant *instant, const char *name, int64_t rows,
+                   int64_t cols, const char *attributes, double *values)
 {
-    const struct section *before = stream_find(run->stream, name);
-    bool fits = before != NULL && before->type == TYPE_F8 && before->cols == count + 1;
-    int64_t rows = fits ? before->rows : 0;
-    double *table = run_new_values(run, (rows + 1) * (count + 1)), *row = table + rows * (count + 1);
-    if (fits) {
-        memcpy(table, before->data, (size_t)(rows * (count + 1)) * sizeof *table);
+    char table[64];
+    int64_t count = rows * cols;
+    if (instant->frame == FRAME_NONE) {
+        run_put(run, name, rows, cols, attributes, values);
+        return;
     }
-    row[0] = time;
+    snprintf(table, sizeof table, "%s.frames", name);
+    const struct section *before = stream_find(run->stream, table);
+    int64_t known = before != NULL && before->cols == count + 1 ? before->rows : 0;
+    double *all = run_new_values(run, (known + 1) * (count + 1)), *row = all + known * (count + 1);
+    if (known > 0) {
+        memcpy(all, before->data, (size_t)(known * (count + 1)) * sizeof *all);
+    }
+    row[0] = instant->time;
     memcpy(row + 1, values, (size_t)count * sizeof *row);
     free(values);
-    run_put(run, name, rows + 1, count + 1, attributes, table);
+    run_put(run, table, known + 1, count + 1, attributes, all);
 }
 
 /* Put place, gap, and nominal and true pressure of every contact node of every contact. */
@@ -252,11 +248,7 @@ static void put_energy(struct run *run, const struct instant *instant)
              : in_time ? "s,"
                        : "1,",
              unit, unit, more, in_steps ? unit : "", is_frame ? "time," : "", in_steps ? ",dissipated" : "");
-    if (is_frame) {
-        run_append_row(run, "energy.frames", instant->time, values, count, attributes);
-    } else {
-        run_put(run, "energy", 1, count, attributes, values);
-    }
+    run_put_table(run, instant, "energy", 1, count, attributes, values);
 }
 
 /* Put the requested output besides u, for the state run->u at which the system was evaluated last. */

@@ -187,46 +187,33 @@ static bool begins_with(const char *text, const char *prefix)
     return strncmp(text, prefix, strlen(prefix)) == 0;
 }
 
-/* Whether a section of this name (X of X.frame.K) describes the reference state, which is the same in all
- * frames. */
+/* Whether a section describes the reference state, which is the same in all frames. */
 static bool is_static(const char *name)
 {
-    return begins_with(name, "cells.") || begins_with(name, "nodes.") || begins_with(name, "support.") ||
-           begins_with(name, DERIVED_GROUP) || strcmp(name, "points.weight") == 0;
-}
-
-/* Whether the part of a name before its first dot is in a NULL-terminated list. */
-static bool is_one_of(const char *name, const char *const *list)
-{
-    size_t length = strcspn(name, ".");
-    for (; *list != NULL; list++) {
-        if (length == strlen(*list) && strncmp(name, *list, length) == 0) {
-            return true;
-        }
-    }
-    return false;
+    return section_stage(name) < MADE_WITH_RESULTS || begins_with(name, DERIVED_GROUP);
 }
 
 /* Whether a section is a list, geometry, or of neither nodes nor cells, for any number of rows. */
 static bool is_structure(const char *name)
 {
-    static const char *const exact[] = {"nodes.x", "cells", "points.x", "points.cell"};
-    static const char *const first[] = {"facets", "faces",     "facepoints", "facepoint", "face", "boundary",
-                                        "sets",   "reactions", "energy",     "gaps",      NULL};
-    for (size_t i = 0; i < sizeof exact / sizeof exact[0]; i++) {
-        if (strcmp(name, exact[i]) == 0) {
-            return true;
-        }
-    }
-    return is_one_of(name, first) || text_ends(name, ".ptr") || text_ends(name, ".idx");
+    const struct section_kind *kind = section_kind_of(name);
+    return kind != NULL &&
+           (kind->content == LIST || kind->content == INDEX_OR_NONE || kind->rows_of == NULL ||
+            (strcmp(kind->rows_of, "nodes.x") != 0 && strcmp(kind->rows_of, "cells") != 0 &&
+             strcmp(kind->rows_of, "points.x") != 0));
 }
 
 /* Whether a section of this name has a row for each integration point or cell. */
 static bool is_of_points(const char *name)
 {
-    static const char *const first[] = {"cells",        "points", "stress", "strain", "pressure",
-                                        "volume_ratio", "fibre",  "J",      NULL};
-    return is_one_of(name, first);
+    static const char *const first[] = {"cells",    "points",       "stress", "strain",
+                                        "pressure", "volume_ratio", "fibre",  "J"};
+    size_t length = strcspn(name, ".");
+    bool any = false;
+    for (size_t i = 0; i < sizeof first / sizeof *first; i++) {
+        any = any || (length == strlen(first[i]) && strncmp(name, first[i], length) == 0);
+    }
+    return any;
 }
 
 static bool is_field(const struct vtk_mesh *mesh, const struct section *section, bool *of_cells)
@@ -279,7 +266,7 @@ static enum status find_frames(struct plot *plot, struct error *error)
     for (int64_t s = 0; s < plot->stream.section_count; s++) {
         size_t length;
         int64_t frame = frame_of(plot->stream.sections[s].name, &length);
-        if (frame != FRAME_NONE) {
+        if (frame >= 0) {
             plot->frames[plot->frame_count++] = frame;
         }
     }

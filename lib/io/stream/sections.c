@@ -71,12 +71,10 @@ const struct section_kind *section_kind_of(const char *name)
 enum section_stage section_stage(const char *name)
 {
     size_t first = strcspn(name, ".");
-    enum section_stage stage = MADE_ELSEWHERE;
-    for (int i = 0; i < SECTION_KINDS; i++) {
+    const struct section_kind *own = section_kind_of(name);
+    enum section_stage stage = own != NULL ? own->stage : MADE_ELSEWHERE;
+    for (int i = 0; i < SECTION_KINDS && own == NULL; i++) {
         const struct section_kind *kind = &section_kinds[i];
-        if (strcmp(kind->name, name) == 0) {
-            return kind->stage;
-        }
         if (kind->stage < stage && kind->stage < MADE_WITH_RESULTS && strcspn(kind->name, ".") == first &&
             strncmp(kind->name, name, first) == 0) {
             stage = kind->stage;
@@ -102,6 +100,10 @@ int64_t frame_of(const char *name, size_t *length)
     int64_t frame;
     const char *at = strstr(name, infix);
     *length = strlen(name);
+    if (text_ends(name, ".frames")) {
+        *length -= strlen(".frames");
+        return FRAME_TABLE;
+    }
     if (at == NULL || parse_integer(at + strlen(infix), name, 0, INT32_MAX, &frame, &ignored) != STATUS_OK) {
         return FRAME_NONE;
     }

@@ -44,7 +44,7 @@ struct section_kind {
 enum { SECTION_KINDS = 49 };
 extern const struct section_kind section_kinds[SECTION_KINDS];
 
-/* The entry of a section; of a section X.frame.K that of X. NULL: not in the table. */
+/* The entry of a section; of a section X.frame.K or X.frames that of X. NULL: not in the table. */
 const struct section_kind *section_kind_of(const char *name);
 
 /* The stage of a section. For a section that is not in the table, the part of its name before the first dot
@@ -54,10 +54,10 @@ enum section_stage section_stage(const char *name);
 /* Remove the sections made by the stages first .. last. */
 void sections_remove(struct stream *stream, enum section_stage first, enum section_stage last);
 
-/* Sections of frames: X.frame.K is section X in state K of a run; 0 is the initial state. */
+/* Sections of frames: X.frame.K is section X in state K of a run, 0 the initial state; X.frames is a table
+ * with a row for each state. */
+enum { FRAME_NONE = -1, FRAME_TABLE = -2 };
 
-/* Result of frame_of for a section that belongs to no frame. */
-#define FRAME_NONE (-1)
-
-/* K of a section X.frame.K; FRAME_NONE for another section. *length receives that of X. */
+/* K of a section X.frame.K; FRAME_TABLE of X.frames; FRAME_NONE of another section. *length receives that of
+ * X. */
 int64_t frame_of(const char *name, size_t *length);
