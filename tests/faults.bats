@@ -74,7 +74,7 @@ limit_memory() { [[ $BUILD == *san* ]] || echo 'ulimit -v 4000000;'; }
     mesh | sed 's/^4 2 2 4 1 10 30 20/4 2 2 4 1 10 30 21/' > bad.msh
     refused "in a mesh" 2 "names the node 21" 'nodes -u mm bad.msh'
     mts text cloud.mts | sed '/^# cells /{n;s/^[0-9]*/25/}' > bad.mts
-    refused "in a stream" 2 "cells: row 0: no node 25" 'ipoints bad.mts'
+    refused "in a stream" 2 "cells: row 0: no row 25 of nodes.x" 'ipoints bad.mts'
 }
 
 @test "fault 7: physical group absent, empty or misspelt" {
@@ -245,7 +245,7 @@ limit_memory() { [[ $BUILD == *san* ]] || echo 'ulimit -v 4000000;'; }
     # Bytes swapped in every number, as another machine would write them, with the right checksum.
     swap='{ for (i = 1; i <= NF; i++) { v = $i; s = 0; for (k = 0; k < 4; k++) { s = s * 256 + v % 256; v = int(v / 256) } $i = s >= 2147483648 ? s - 4294967296 : s } print }'
     mts text cloud.mts | awk "/^#/ { on = \$2 == \"cells\" } on && /^[0-9]/ $swap !(on && /^[0-9]/) { print }" | mts binary > swapped.mts
-    refused "byte order of a stream" 2 "cells: row 0: no node" 'ipoints swapped.mts'
+    refused "byte order of a stream" 2 "cells: row 0: no row" 'ipoints swapped.mts'
     # In a binary mesh the number 1 behind the version tells the order.
     sed 's/^\x01\x00\x00\x00$/\x00\x00\x00\x01/' "$BATS_TEST_DIRNAME/fuzz/corpus/msh/binary41" > swapped.msh
     refused "byte order of a mesh" 2 "byte" 'nodes -u mm swapped.msh'

@@ -140,7 +140,7 @@ even() {
     shortened support.side lists.txt > short.txt
     refused 2 "support.side: " shapefn short.txt
     awk '/^# /{ on = $2 == "support.side" } on && /^[0-9]/ && !done { $0 = "-3"; done = 1 } { print }' lists.txt > damaged.txt
-    refused 2 "support.side: row 0: no side -3" shapefn damaged.txt
+    refused 2 "support.side: row 0: no row -3 of cells" shapefn damaged.txt
     run -1 mts check damaged.txt
     [[ $output == *"support.side: row 0: no row -3 of cells"* ]]
 }

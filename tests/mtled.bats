@@ -254,7 +254,7 @@ near() {
     ipoints --lattice 5,5 square.mts | shapefn > lattice.mts 2> note
     refused 2 "an evaluation lattice cannot be integrated over" mtled block.scene lattice.mts
     mts text table.mts | sed '/^# faces i4/{n;s/^[0-9]*/36/}' > bad.mts
-    refused 2 "faces: row 0: no node 36" mtled block.scene bad.mts
+    refused 2 "faces: row 0: no row 36 of nodes.x" mtled block.scene bad.mts
     mts text table.mts | sed '/^# facets.set/,/^$/s/^3$/2/' > empty.mts
     refused 2 "its facet groups are empty" mtled block.scene empty.mts
 }

@@ -136,7 +136,7 @@ edit() {
     edit nodes.x 3 "nan 0" square.txt > bad.txt
     for tool in $tools; do hostile 2 $tool bad.txt "nodes.x: row 3"; done
     edit cells 5 "0 1 49" square.txt > bad.txt
-    for tool in $tools; do hostile 2 $tool bad.txt "cells: row 5: no node 49"; done
+    for tool in $tools; do hostile 2 $tool bad.txt "cells: row 5: no row 49 of nodes.x"; done
     edit cells 5 "0 0 1" square.txt > bad.txt
     hostile 2 ipoints bad.txt "cells: row 5"
     ipoints -g 3 -t square.mts > gauss.txt
@@ -146,11 +146,11 @@ edit() {
     hostile 2 support bad.txt "facepoints.x: row 2"
     for node in 49 -1; do
         edit facepoint.idx 7 "$node" lists.txt > bad.txt
-        hostile 2 shapefn bad.txt "facepoint.idx: row 7: no node $node"
+        hostile 2 shapefn bad.txt "facepoint.idx: row 7: no row $node of nodes.x"
         edit node.idx 7 "$node" lists.txt > bad.txt
-        hostile 2 shapefn bad.txt "node.idx: row 7: no node $node"
+        hostile 2 shapefn bad.txt "node.idx: row 7: no row $node of nodes.x"
         edit faces 1 "$node 3" lists.txt > bad.txt
-        hostile 2 shapefn bad.txt "faces: row 1: no node $node"
+        hostile 2 shapefn bad.txt "faces: row 1: no row $node of nodes.x"
     done
     edit faces.cell 1 "72 3" lists.txt > bad.txt
     hostile 2 shapefn bad.txt "faces.cell: row 1"
@@ -180,7 +180,7 @@ END
     hostile 2 shapefn bad.txt "support.radius: -b: "
     support -t gauss.txt > lists.txt
     edit nbr.idx 7 1000 lists.txt > bad.txt
-    hostile 2 shapefn bad.txt "nbr.idx: row 7: no node 1000"
+    hostile 2 shapefn bad.txt "nbr.idx: row 7: no row 1000 of nodes.x"
     edit points.x 2 "nan 0" lists.txt > bad.txt
     hostile 2 shapefn bad.txt "points.x: row 2"
 }

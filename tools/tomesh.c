@@ -252,8 +252,8 @@ int main(int argc, char *argv[])
     tool_read(&tool, tool.operands[0], &stream);
     TOOL_TRY(&tool, stream_cells(&stream, true, &body.cells, &error));
     TOOL_TRY(&tool, stream_regions(&stream, true, &body.regions, &error));
-    TOOL_TRY(&tool, stream_facets(&stream, false, &body.cells, &body.facets, &error));
-    TOOL_TRY(&tool, stream_sets(&stream, false, body.cells.node_count, &body.sets, &error));
+    TOOL_TRY(&tool, stream_facets(&stream, false, &body.facets, &error));
+    TOOL_TRY(&tool, stream_sets(&stream, false, &body.sets, &error));
     tool_print_to(&tool, &output, tool.output);
     TOOL_TRY(&tool, output_end(&output,
                                is_msh ? write_msh(output.file, &body, unit, &error)

@@ -8,36 +8,6 @@
 #include <stdio.h>
 #include <string.h>
 
-/* ---- each section by itself ---- */
-
-static enum status check_indices(const struct stream *stream, const struct section *section,
-                                 const struct section_kind *kind, struct error *error)
-{
-    const struct section *other = stream_find(stream, kind->index_of);
-    char of[64];
-    snprintf(of, sizeof of, " of %s", kind->index_of);
-    return section_check_indices(section, kind->content == INDEX_OR_NONE ? -1 : 0,
-                                 other != NULL ? other->rows : INT32_MAX, "row", of, error);
-}
-
-static enum status check_section(const struct stream *stream, const struct section *section,
-                                 struct error *error)
-{
-    const struct section_kind *kind = section_kind_of(section->name);
-    if (kind == NULL || (kind->content == ANY && kind->cols == COLS_ANY)) {
-        return STATUS_OK;
-    }
-    RETURN_IF_ERROR(section_check_shape(stream, section, kind, error));
-    if (kind->index_of != NULL) {
-        return check_indices(stream, section, kind, error);
-    }
-    return kind->type == TYPE_F8 && kind->content != ANY
-               ? section_check_numbers(section, kind->content, error)
-               : STATUS_OK;
-}
-
-/* ---- sections together, each as the table says ---- */
-
 static enum status check_unity(const struct neighbours *lists, const struct section *phi, struct error *error)
 {
     const double *value = phi->data;
@@ -60,13 +30,12 @@ static enum status check_lists(const struct stream *stream, const char *ptr_name
     struct neighbours lists;
     snprintf(prefix, sizeof prefix, "%.*s", (int)strcspn(ptr_name, "."), ptr_name);
     snprintf(idx_name, sizeof idx_name, "%s.idx", prefix);
-    const struct section *ptr = stream_find(stream, ptr_name), *nodes = stream_find(stream, "nodes.x");
+    const struct section *ptr = stream_find(stream, ptr_name);
     if (ptr == NULL && stream_find(stream, idx_name) == NULL) {
         return STATUS_OK;
     }
     int64_t rows = ptr != NULL && ptr->rows > 0 ? ptr->rows - 1 : 0;
-    RETURN_IF_ERROR(
-        stream_neighbours(stream, prefix, rows, nodes != NULL ? nodes->rows : INT32_MAX, &lists, error));
+    RETURN_IF_ERROR(stream_neighbours(stream, prefix, rows, &lists, error));
     for (int k = 0; k < SECTION_KINDS; k++) {
         const struct section_kind *kind = &section_kinds[k];
         const struct section *phi = stream_find(stream, kind->name);
@@ -77,27 +46,22 @@ static enum status check_lists(const struct stream *stream, const char *ptr_name
     return STATUS_OK;
 }
 
-static enum status check_groups(const struct stream *stream, const struct cells *cells, struct error *error)
+static enum status check_groups(const struct stream *stream, struct error *error)
 {
     FREED_BY(groups_free) struct groups regions = {0}, facets = {0}, sets = {0};
-    if (cells->count > 0) {
-        RETURN_IF_ERROR(stream_regions(stream, false, &regions, error));
-    }
-    if (cells->node_count > 0) {
-        RETURN_IF_ERROR(stream_facets(stream, false, cells, &facets, error));
-        RETURN_IF_ERROR(stream_sets(stream, false, cells->node_count, &sets, error));
-    }
-    return STATUS_OK;
+    RETURN_IF_ERROR(stream_regions(stream, false, &regions, error));
+    RETURN_IF_ERROR(stream_facets(stream, false, &facets, error));
+    return stream_sets(stream, false, &sets, error);
 }
 
 /* Check the faces, and the sections with a row for each of their rows or points. */
-static enum status check_faces(const struct stream *stream, const struct cells *cells, struct error *error)
+static enum status check_faces(const struct stream *stream, struct error *error)
 {
     struct faces faces;
-    if (cells->count == 0 || stream_find(stream, "faces") == NULL) {
+    if (stream_find(stream, "faces") == NULL) {
         return STATUS_OK;
     }
-    RETURN_IF_ERROR(stream_faces(stream, cells, &faces, error));
+    RETURN_IF_ERROR(stream_faces(stream, &faces, error));
     const struct {
         const char *name;
         int64_t rows;
@@ -114,8 +78,6 @@ static enum status check_faces(const struct stream *stream, const struct cells *
     return STATUS_OK;
 }
 
-/* ---- all of it ---- */
-
 static enum status note(struct names *violations, enum status status, struct error *error)
 {
     return status == STATUS_INPUT ? names_add(violations, error->text, error) : status;
@@ -130,8 +92,8 @@ static enum status check_together(const struct stream *stream, struct names *vio
     if (violations->count > 0) {
         return STATUS_OK;
     }
-    RETURN_IF_ERROR(note(violations, check_groups(stream, &cells, error), error));
-    RETURN_IF_ERROR(note(violations, check_faces(stream, &cells, error), error));
+    RETURN_IF_ERROR(note(violations, check_groups(stream, error), error));
+    RETURN_IF_ERROR(note(violations, check_faces(stream, error), error));
     for (int k = 0; k < SECTION_KINDS; k++) {
         const struct section_kind *kind = &section_kinds[k];
         if (kind->content == LIST && strcmp(kind->name, "sets.ptr") != 0) {
@@ -144,7 +106,11 @@ static enum status check_together(const struct stream *stream, struct names *vio
 enum status stream_check(const struct stream *stream, struct names *violations, struct error *error)
 {
     for (int64_t i = 0; i < stream->section_count; i++) {
-        RETURN_IF_ERROR(note(violations, check_section(stream, &stream->sections[i], error), error));
+        const struct section *section = &stream->sections[i];
+        const struct section_kind *kind = section_kind_of(section->name);
+        if (kind != NULL) {
+            RETURN_IF_ERROR(note(violations, section_check(stream, section, kind, error), error));
+        }
     }
     return violations->count == 0 ? check_together(stream, violations, error) : STATUS_OK;
 }

@@ -32,9 +32,9 @@ static enum status read_body(const struct stream *stream, struct cut_body *whole
     const struct incise_options *options = whole->options;
     struct cells *cells = &whole->cells;
     RETURN_IF_ERROR(stream_cells(stream, true, cells, error));
-    RETURN_IF_ERROR(stream_facets(stream, false, cells, &whole->facets, error));
+    RETURN_IF_ERROR(stream_facets(stream, false, &whole->facets, error));
     RETURN_IF_ERROR(stream_regions(stream, false, &whole->regions, error));
-    RETURN_IF_ERROR(stream_sets(stream, false, cells->node_count, &whole->sets, error));
+    RETURN_IF_ERROR(stream_sets(stream, false, &whole->sets, error));
     RETURN_IF_ERROR(division_begin(cells, options->at, whole->regions.group, whole->facets.count,
                                    whole->facets.node, whole->facets.group, &whole->body, error));
     for (int64_t s = 0; s < whole->sets.names.count; s++) {

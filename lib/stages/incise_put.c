@@ -213,7 +213,6 @@ static enum status take_fibres(const struct cut_body *whole, const struct stream
     }
     RETURN_IF_ERROR(stream_view(stream, "points.fibre", &of_point, error));
     RETURN_IF_ERROR(stream_view(stream, "points.cell", &cell, error));
-    RETURN_IF_ERROR(section_check_indices(cell, -1, whole->cells.count, "cell", "", error));
     const double *value = of_point->data;
     const int32_t *owner = cell->data;
     int64_t cols = of_point->cols;

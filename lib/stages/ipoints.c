@@ -136,7 +136,7 @@ enum status stage_face_points(struct stream *stream, struct error *error)
     struct cells cells;
     struct faces faces;
     RETURN_IF_ERROR(stream_cells(stream, true, &cells, error));
-    RETURN_IF_ERROR(stream_faces(stream, &cells, &faces, error));
+    RETURN_IF_ERROR(stream_faces(stream, &faces, error));
     return put_face_points(stream, &cells, &faces, error);
 }
 

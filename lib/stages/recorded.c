@@ -130,7 +130,6 @@ enum status stage_recorded(const struct stream *stream, const char *prefix, stru
         return STATUS_OK;
     }
     RETURN_IF_ERROR(stream_view(stream, name, &radius, error));
-    RETURN_IF_ERROR(section_check_numbers(radius, POSITIVE, error));
     recorded->radius = radius->data;
     RETURN_IF_ERROR(stage_sides(stream, prefix, &options->side, error));
     RETURN_IF_ERROR(read_mls(radius, "", &options->mls, error));

@@ -22,12 +22,10 @@ static enum status view_points(const struct stream *stream, const char *section,
     RETURN_IF_ERROR(stream_nodes(stream, &dim, &of->node_count, &of->nodes, error));
     RETURN_IF_ERROR(stream_view(stream, section, &points, error));
     RETURN_IF_ERROR(stream_view(stream, "support.radius", &radius, error));
-    RETURN_IF_ERROR(stream_neighbours(stream, prefix, points->rows, of->node_count, &of->lists, error));
+    RETURN_IF_ERROR(stream_neighbours(stream, prefix, points->rows, &of->lists, error));
     if (of->lists.widen == NULL) {
         return fail(error, STATUS_INPUT, "no section %s.widen: run support", prefix);
     }
-    RETURN_IF_ERROR(section_check_numbers(points, FINITE, error));
-    RETURN_IF_ERROR(section_check_numbers(radius, POSITIVE, error));
     of->x = points->data;
     of->radius = radius->data;
     of->section = section;
@@ -71,12 +69,10 @@ static enum status put_table(struct stream *stream, const char *prefix, int64_t 
  * the points of faces has served. */
 static enum status put_faces(struct stream *stream, const struct mls *mls, bool smoothed, struct error *error)
 {
-    struct cells cells;
     struct faces faces;
     struct tabulated of;
     FREED_BY(shape_rows_free) struct shape_rows boundary = {0}, edges = {0};
-    RETURN_IF_ERROR(stream_cells(stream, true, &cells, error));
-    RETURN_IF_ERROR(stream_faces(stream, &cells, &faces, error));
+    RETURN_IF_ERROR(stream_faces(stream, &faces, error));
     RETURN_IF_ERROR(view_points(stream, "facepoints.x", "facepoint", &of, error));
     if (of.lists.count != face_point_count(&faces)) {
         return fail(error, STATUS_INPUT, "facepoints.x: does not fit faces: run ipoints again");
@@ -140,12 +136,11 @@ static enum status read_points(const struct stream *stream, struct assembly *inp
 
 /* A table of shapefn: sections PREFIX.ptr and .idx, and values or gradients on these lists. */
 static enum status read_table(const struct stream *stream, const char *prefix, const char *values,
-                              int64_t rows, int64_t node_count, struct neighbours *lists, const double **phi,
-                              struct error *error)
+                              int64_t rows, struct neighbours *lists, const double **phi, struct error *error)
 {
     const struct section *section;
     RETURN_IF_ERROR(stream_view(stream, values, &section, error));
-    RETURN_IF_ERROR(stream_neighbours(stream, prefix, rows, node_count, lists, error));
+    RETURN_IF_ERROR(stream_neighbours(stream, prefix, rows, lists, error));
     *phi = section->data;
     return STATUS_OK;
 }
@@ -153,19 +148,17 @@ static enum status read_table(const struct stream *stream, const char *prefix, c
 static enum status read_tables(const struct stream *stream, struct assembly *input, struct error *error)
 {
     int64_t nodes = input->cells.node_count, points = input->point_count;
-    RETURN_IF_ERROR(stream_faces(stream, &input->cells, &input->faces, error));
+    RETURN_IF_ERROR(stream_faces(stream, &input->faces, error));
     if (input->smoothed) {
-        RETURN_IF_ERROR(read_table(stream, "edge", "edge.phi", face_row_count(&input->faces), nodes,
-                                   &input->lists, &input->phi, error));
+        RETURN_IF_ERROR(read_table(stream, "edge", "edge.phi", face_row_count(&input->faces), &input->lists,
+                                   &input->phi, error));
     } else {
-        RETURN_IF_ERROR(
-            read_table(stream, "nbr", "shape.phi", points, nodes, &input->lists, &input->phi, error));
-        RETURN_IF_ERROR(
-            read_table(stream, "nbr", "shape.dphi", points, nodes, &input->lists, &input->dphi, error));
+        RETURN_IF_ERROR(read_table(stream, "nbr", "shape.phi", points, &input->lists, &input->phi, error));
+        RETURN_IF_ERROR(read_table(stream, "nbr", "shape.dphi", points, &input->lists, &input->dphi, error));
     }
-    RETURN_IF_ERROR(read_table(stream, "boundary", "boundary.phi", face_boundary_points(&input->faces), nodes,
+    RETURN_IF_ERROR(read_table(stream, "boundary", "boundary.phi", face_boundary_points(&input->faces),
                                &input->boundary_lists, &input->boundary_phi, error));
-    return read_table(stream, "node", "node.phi", nodes, nodes, &input->node_lists, &input->node_phi, error);
+    return read_table(stream, "node", "node.phi", nodes, &input->node_lists, &input->node_phi, error);
 }
 
 enum status stage_tables(const struct stream *stream, struct assembly *input, struct error *error)

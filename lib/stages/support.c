@@ -71,8 +71,8 @@ static enum status put_lists(struct stream *stream, const struct support_options
 }
 
 /* The cells of the integration points; they are searched for if there is no such section. */
-static enum status places_of_points(const struct stream *stream, const struct cells *cells,
-                                    struct visibility_places *places, struct error *error)
+static enum status places_of_points(const struct stream *stream, struct visibility_places *places,
+                                    struct error *error)
 {
     const struct section *section = stream_find(stream, "points.cell");
     *places = (struct visibility_places){0};
@@ -80,8 +80,6 @@ static enum status places_of_points(const struct stream *stream, const struct ce
         return STATUS_OK;
     }
     RETURN_IF_ERROR(stream_view(stream, "points.cell", &section, error));
-    RETURN_IF_ERROR(
-        section_check_indices(section, -1, cells->count > 0 ? cells->count : INT32_MAX, "cell", "", error));
     *places = (struct visibility_places){.cell = section->data, .points_per_row = 1};
     return STATUS_OK;
 }
@@ -97,7 +95,7 @@ static enum status places_of_face_points(const struct stream *stream, const stru
     if (cells->count == 0 || stream_find(stream, "faces.cell") == NULL) {
         return STATUS_OK;
     }
-    RETURN_IF_ERROR(stream_faces(stream, cells, &faces, error));
+    RETURN_IF_ERROR(stream_faces(stream, &faces, error));
     if (face_point_count(&faces) != points) {
         return fail(error, STATUS_INPUT, "facepoints.x: does not fit faces: run ipoints again");
     }
@@ -145,7 +143,7 @@ enum status stage_lists(struct stream *stream, const struct support_options *opt
     bool smoothed = points_are_smoothed(points); /* gradients come from the faces alone */
     if (!smoothed) {
         listed = (struct listed){.points = points, .prefix = "nbr", .called = "integration points"};
-        RETURN_IF_ERROR(places_of_points(stream, &cells, &listed.places, error));
+        RETURN_IF_ERROR(places_of_points(stream, &listed.places, error));
         RETURN_IF_ERROR(put_lists(stream, &actual, &space, &listed, report, error));
     }
     if (stream_find(stream, "faces") != NULL || smoothed) {
@@ -217,7 +215,6 @@ enum status stage_sides(const struct stream *stream, const char *prefix, const i
                         struct error *error)
 {
     char name[64];
-    struct cells cells;
     const struct section *section;
     snprintf(name, sizeof name, "%s.side", prefix);
     *side = NULL;
@@ -225,9 +222,8 @@ enum status stage_sides(const struct stream *stream, const char *prefix, const i
         return STATUS_OK;
     }
     RETURN_IF_ERROR(stream_view(stream, name, &section, error));
-    RETURN_IF_ERROR(stream_cells(stream, true, &cells, error));
     *side = section->data;
-    return section_check_indices(section, 0, cells.count, "side", "", error);
+    return STATUS_OK;
 }
 
 enum status stage_renew(struct stream *stream, const int32_t *side, struct error *error)

@@ -23,8 +23,9 @@ static int find_dimension(const struct stream *stream)
     return x != NULL && (x->cols == 2 || x->cols == 3) ? (int)x->cols : 0;
 }
 
-enum status section_check_shape(const struct stream *stream, const struct section *section,
-                                const struct section_kind *kind, struct error *error)
+/* Type, columns and rows. */
+static enum status check_shape(const struct stream *stream, const struct section *section,
+                               const struct section_kind *kind, struct error *error)
 {
     int dim = find_dimension(stream);
     int64_t cols = kind->cols == COLS_DIM          ? dim
@@ -51,21 +52,10 @@ enum status section_check_shape(const struct stream *stream, const struct sectio
     return STATUS_OK;
 }
 
-enum status stream_view(const struct stream *stream, const char *name, const struct section **section,
-                        struct error *error)
-{
-    const struct section_kind *kind = section_kind_of(name);
-    *section = stream_find(stream, name);
-    return *section == NULL ? fail(error, STATUS_INPUT, "no section %s: run %s", name, producer(kind))
-                            : section_check_shape(stream, *section, kind, error);
-}
-
 enum status section_check_numbers(const struct section *section, enum content content, struct error *error)
 {
-    static const char *const required[] = {[FINITE] = "finite",
-                                           [UNITY] = "finite",
-                                           [POSITIVE] = "finite and positive",
-                                           [AT_LEAST_ONE] = "finite and at least 1"};
+    static const char *const required[] = {
+        [FINITE] = "finite", [POSITIVE] = "finite and positive", [AT_LEAST_ONE] = "finite and at least 1"};
     const double *values = section->data;
     for (int64_t i = 0; i < section->rows * section->cols; i++) {
         double value = values[i];
@@ -91,6 +81,31 @@ enum status section_check_indices(const struct section *section, int64_t least, 
     return STATUS_OK;
 }
 
+enum status section_check(const struct stream *stream, const struct section *section,
+                          const struct section_kind *kind, struct error *error)
+{
+    char of[64];
+    const struct section *other = kind->index_of != NULL ? stream_find(stream, kind->index_of) : NULL;
+    RETURN_IF_ERROR(check_shape(stream, section, kind, error));
+    if (kind->index_of != NULL) {
+        snprintf(of, sizeof of, " of %s", kind->index_of);
+        return section_check_indices(section, kind->content == INDEX_OR_NONE ? -1 : 0,
+                                     other != NULL ? other->rows : INT32_MAX, "row", of, error);
+    }
+    return kind->content >= FINITE && kind->content <= AT_LEAST_ONE
+               ? section_check_numbers(section, kind->content, error)
+               : STATUS_OK;
+}
+
+enum status stream_view(const struct stream *stream, const char *name, const struct section **section,
+                        struct error *error)
+{
+    const struct section_kind *kind = section_kind_of(name);
+    *section = stream_find(stream, name);
+    return *section == NULL ? fail(error, STATUS_INPUT, "no section %s: run %s", name, producer(kind))
+                            : section_check(stream, *section, kind, error);
+}
+
 /* ---- nodes, cells and groups ---- */
 
 enum status stream_nodes(const struct stream *stream, int *dim, int64_t *node_count, const double **x,
@@ -106,7 +121,7 @@ enum status stream_nodes(const struct stream *stream, int *dim, int64_t *node_co
         *node_count = nodes->rows;
         *x = nodes->data;
     }
-    return section_check_numbers(nodes, FINITE, error);
+    return STATUS_OK;
 }
 
 enum status stream_cells(const struct stream *stream, bool needed, struct cells *cells, struct error *error)
@@ -157,8 +172,8 @@ enum status stream_regions(const struct stream *stream, bool needed, struct grou
     return section_check_indices(section, 0, regions->names.count, "region", " in names=", error);
 }
 
-enum status stream_facets(const struct stream *stream, bool needed, const struct cells *cells,
-                          struct groups *facets, struct error *error)
+enum status stream_facets(const struct stream *stream, bool needed, struct groups *facets,
+                          struct error *error)
 {
     const struct section *facet, *group;
     *facets = (struct groups){0};
@@ -167,7 +182,6 @@ enum status stream_facets(const struct stream *stream, bool needed, const struct
     }
     RETURN_IF_ERROR(stream_view(stream, "facets", &facet, error));
     RETURN_IF_ERROR(stream_view(stream, "facets.set", &group, error));
-    RETURN_IF_ERROR(section_check_indices(facet, 0, cells->node_count, "node", "", error));
     RETURN_IF_ERROR(names_of(group, "names", &facets->names, error));
     RETURN_IF_ERROR(section_check_indices(group, 0, facets->names.count, "group", " in names=", error));
     facets->count = facet->rows;
@@ -176,8 +190,7 @@ enum status stream_facets(const struct stream *stream, bool needed, const struct
     return STATUS_OK;
 }
 
-enum status stream_sets(const struct stream *stream, bool needed, int64_t node_count, struct groups *sets,
-                        struct error *error)
+enum status stream_sets(const struct stream *stream, bool needed, struct groups *sets, struct error *error)
 {
     const struct section *ptr;
     *sets = (struct groups){0};
@@ -186,7 +199,7 @@ enum status stream_sets(const struct stream *stream, bool needed, int64_t node_c
     }
     RETURN_IF_ERROR(stream_view(stream, "sets.ptr", &ptr, error));
     RETURN_IF_ERROR(names_of(ptr, "names", &sets->names, error));
-    return stream_neighbours(stream, "sets", sets->names.count, node_count, &sets->lists, error);
+    return stream_neighbours(stream, "sets", sets->names.count, &sets->lists, error);
 }
 
 /* The edges of faces, in 3D of smoothed cells only and in the order of their first use. */
@@ -213,15 +226,13 @@ static enum status view_edges(const struct stream *stream, struct faces *faces, 
     return face_edges_ends(faces, ends, error);
 }
 
-enum status stream_faces(const struct stream *stream, const struct cells *cells, struct faces *faces,
-                         struct error *error)
+enum status stream_faces(const struct stream *stream, struct faces *faces, struct error *error)
 {
     const struct section *node, *cell;
     RETURN_IF_ERROR(stream_view(stream, "faces", &node, error));
     RETURN_IF_ERROR(stream_view(stream, "faces.cell", &cell, error));
-    *faces = (struct faces){.dim = cells->dim, .count = node->rows, .node = node->data, .cell = cell->data};
-    RETURN_IF_ERROR(section_check_indices(node, 0, cells->node_count, "node", "", error));
-    RETURN_IF_ERROR(section_check_indices(cell, -1, cells->count, "cell", "", error));
+    *faces =
+        (struct faces){.dim = (int)node->cols, .count = node->rows, .node = node->data, .cell = cell->data};
     for (int64_t f = 0; f < faces->count; f++) {
         if (faces->cell[2 * f] < 0) {
             return fail(error, STATUS_INPUT, "faces.cell: row %jd: no cell -1", f);
@@ -253,7 +264,7 @@ static enum status view_member(const struct stream *stream, const char *prefix, 
                : stream_view(stream, name, section, error);
 }
 
-enum status stream_neighbours(const struct stream *stream, const char *prefix, int64_t rows, int64_t columns,
+enum status stream_neighbours(const struct stream *stream, const char *prefix, int64_t rows,
                               struct neighbours *lists, struct error *error)
 {
     const struct section *ptr, *idx, *widen = NULL;
@@ -270,7 +281,6 @@ enum status stream_neighbours(const struct stream *stream, const char *prefix, i
             return fail(error, STATUS_INPUT, "%s.ptr: row %jd: decreases", prefix, p + 1);
         }
     }
-    RETURN_IF_ERROR(section_check_indices(idx, 0, columns, "node", "", error));
     for (int64_t p = 0; p < rows; p++) {
         for (int64_t i = lists->ptr[p] + 1; i < lists->ptr[p + 1]; i++) {
             if (lists->idx[i] <= lists->idx[i - 1]) {
@@ -279,10 +289,7 @@ enum status stream_neighbours(const struct stream *stream, const char *prefix, i
             }
         }
     }
-    if (widen != NULL) {
-        RETURN_IF_ERROR(section_check_numbers(widen, AT_LEAST_ONE, error));
-        lists->widen = widen->data;
-    }
+    lists->widen = widen != NULL ? widen->data : NULL;
     return STATUS_OK;
 }
 

@@ -7,11 +7,12 @@
 #include "base/names.h"
 #include "io/stream/sections.h"
 
-/* A section that is in the table of sections, with the type, columns and rows that it states. */
+/* A section that is in the table of sections, with the type, columns, rows, numbers and indices that it
+ * states; what concerns lists is for stream_neighbours. */
 MUST_CHECK enum status stream_view(const struct stream *stream, const char *name,
                                    const struct section **section, struct error *error);
-MUST_CHECK enum status section_check_shape(const struct stream *stream, const struct section *section,
-                                           const struct section_kind *kind, struct error *error);
+MUST_CHECK enum status section_check(const struct stream *stream, const struct section *section,
+                                     const struct section_kind *kind, struct error *error);
 
 /* Check the numbers of a section of type f8: FINITE, POSITIVE or AT_LEAST_ONE. */
 MUST_CHECK enum status section_check_numbers(const struct section *section, enum content content,
@@ -22,7 +23,7 @@ MUST_CHECK enum status section_check_numbers(const struct section *section, enum
 MUST_CHECK enum status section_check_indices(const struct section *section, int64_t least, int64_t bound,
                                              const char *what, const char *why, struct error *error);
 
-/* Node coordinates, checked to be finite; or, with node_count and x NULL, only their dimension. */
+/* Node coordinates; or, with node_count and x NULL, only their dimension. */
 MUST_CHECK enum status stream_nodes(const struct stream *stream, int *dim, int64_t *node_count,
                                     const double **x, struct error *error);
 
@@ -49,20 +50,18 @@ struct groups {
 };
 MUST_CHECK enum status stream_regions(const struct stream *stream, bool needed, struct groups *regions,
                                       struct error *error);
-MUST_CHECK enum status stream_facets(const struct stream *stream, bool needed, const struct cells *cells,
-                                     struct groups *facets, struct error *error);
-MUST_CHECK enum status stream_sets(const struct stream *stream, bool needed, int64_t node_count,
-                                   struct groups *sets, struct error *error);
+MUST_CHECK enum status stream_facets(const struct stream *stream, bool needed, struct groups *facets,
+                                     struct error *error);
+MUST_CHECK enum status stream_sets(const struct stream *stream, bool needed, struct groups *sets,
+                                   struct error *error);
 void groups_free(struct groups *groups);
 
 /* Faces of the cells; those on the boundary come first. The view is not to be freed. */
-MUST_CHECK enum status stream_faces(const struct stream *stream, const struct cells *cells,
-                                    struct faces *faces, struct error *error);
+MUST_CHECK enum status stream_faces(const struct stream *stream, struct faces *faces, struct error *error);
 
-/* A CSR list: PREFIX.ptr (rows + 1), PREFIX.idx (within [0, columns), ascending in each row), and
- * PREFIX.widen if it exists. */
+/* A CSR list: PREFIX.ptr (rows + 1), PREFIX.idx (ascending in each row), and PREFIX.widen if it exists. */
 MUST_CHECK enum status stream_neighbours(const struct stream *stream, const char *prefix, int64_t rows,
-                                         int64_t columns, struct neighbours *lists, struct error *error);
+                                         struct neighbours *lists, struct error *error);
 
 /* Whether points.x has one point for each cell, for smoothed cells. */
 bool points_are_smoothed(const struct section *points);

@@ -9,7 +9,6 @@
 #include <math.h>
 #include <string.h>
 
-
 /* rows[table->rows * (dim + entries)]: each point, and a (x) a of its unit direction a, in which the sign is
  * lost. */
 static enum status square_directions(const struct scene_material *section, const struct table *table, int dim,
@@ -117,7 +116,6 @@ static enum status stream_axes(const struct model *model, struct source *source,
             source->section->label.where);
     }
     RETURN_IF_ERROR(stream_view(model->stream, "points.fibre", &section, error));
-    RETURN_IF_ERROR(section_check_numbers(section, FINITE, error));
     source->axes = section->data;
     return STATUS_OK;
 }

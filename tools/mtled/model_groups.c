@@ -43,7 +43,7 @@ enum status model_facets(struct model *model, const struct scene_label *label, c
         return fail(error, STATUS_INPUT, "%s: no named facets: give the mesh physical groups, or run tag",
                     label->where);
     }
-    RETURN_IF_ERROR(stream_facets(model->stream, true, &model->assembly.cells, &facets, error));
+    RETURN_IF_ERROR(stream_facets(model->stream, true, &facets, error));
     NEW_SCRATCH(bool, wanted, facets.names.count, error);
     RETURN_IF_ERROR(choose(label, names, "facet group", &facets.names, wanted, error));
     RETURN_IF_ERROR(MODEL_ARRAY(model, &chosen, facets.count * dim, error));
@@ -76,7 +76,7 @@ enum status model_nodes(struct model *model, const struct scene_label *label, co
     if (stream_find(model->stream, "sets.ptr") == NULL) {
         return fail(error, STATUS_INPUT, "%s: no node sets: run tag -n", label->where);
     }
-    RETURN_IF_ERROR(stream_sets(model->stream, true, node_count, &sets, error));
+    RETURN_IF_ERROR(stream_sets(model->stream, true, &sets, error));
     NEW_SCRATCH(bool, wanted, sets.names.count, error);
     RETURN_IF_ERROR(choose(label, names, "node set", &sets.names, wanted, error));
     NEW_SCRATCH(bool, member, node_count, error);

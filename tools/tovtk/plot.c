@@ -165,10 +165,10 @@ static enum status derived_add(struct stream *stream, const struct cells *cells,
     FREED_BY(groups_free) struct groups facets = {0}, sets = {0};
     const struct neighbours *lists = &sets.lists;
     RETURN_IF_ERROR(add_invariants(stream, frame, error));
-    RETURN_IF_ERROR(stream_facets(stream, false, cells, &facets, error));
+    RETURN_IF_ERROR(stream_facets(stream, false, &facets, error));
     RETURN_IF_ERROR(add_groups(stream, "facets", &facets.names, cells->node_count, facets.count, cells->dim,
                                facets.node, facets.group, error));
-    RETURN_IF_ERROR(stream_sets(stream, false, cells->node_count, &sets, error));
+    RETURN_IF_ERROR(stream_sets(stream, false, &sets, error));
     int64_t count = lists->count > 0 ? lists->ptr[lists->count] : 0;
     NEW_SCRATCH(int32_t, group, count, error);
     for (int64_t i = 0, s = 0; i < count; i++) {

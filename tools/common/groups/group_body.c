@@ -49,7 +49,7 @@ static enum status read_facets(const struct stream *stream, struct group_body *b
 {
     FREED_BY(groups_free) struct groups named = {0};
     struct group_list *list = &body->groups[GROUP_FACETS];
-    RETURN_IF_ERROR(stream_facets(stream, false, &body->cells, &named, error));
+    RETURN_IF_ERROR(stream_facets(stream, false, &named, error));
     NEW_SCRATCH(int32_t, facet, named.count, error);
     RETURN_IF_ERROR(find_facets(body, &named, facet, error));
     list->names = named.names;
@@ -61,7 +61,7 @@ static enum status read_sets(const struct stream *stream, struct group_body *bod
 {
     struct group_list *list = &body->groups[GROUP_NODES];
     FREED_BY(groups_free) struct groups sets = {0};
-    RETURN_IF_ERROR(stream_sets(stream, false, body->cells.node_count, &sets, error));
+    RETURN_IF_ERROR(stream_sets(stream, false, &sets, error));
     list->names = sets.names;
     sets.names = (struct names){0};
     int64_t count = list->names.count > 0 ? sets.lists.ptr[list->names.count] : 0;
