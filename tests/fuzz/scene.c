@@ -65,9 +65,7 @@ static void require_scene(const struct scene *scene)
             REQUIRE((scene->contacts[i].side <= SCENE_RIGHT) == (scene->dim == 2));
         }
     }
-    require_loads(scene->pressures, scene->pressure_count);
-    require_loads(scene->tractions, scene->traction_count);
-    require_loads(scene->forces, scene->force_count);
+    require_loads(scene->loads, scene->load_count);
     REQUIRE(scene->solver.time_step_margin > 0.0 && scene->solver.tolerance > 0.0);
 }
 

@@ -87,11 +87,12 @@ TEST(reads_everything)
     assert_int_equal(scene.displacements[2].curve.kind, CURVE_SMOOTH);
     assert_int_equal(scene.contacts[0].side, SCENE_RIGHT);
     same(scene.contacts[0].condition.stiffness, 1e7);
-    same(scene.pressures[0].load.pressure, -20);
-    assert_int_equal(scene.pressures[0].curve.kind, CURVE_STEP);
-    same(scene.tractions[0].load.components[1], 2);
-    same(scene.forces[0].load.components[1], .5);
-    assert_string_equal(scene.forces[0].nodes.names[0], "tip");
+    same(scene.loads[0].load.pressure, -20);
+    assert_int_equal(scene.loads[0].curve.kind, CURVE_STEP);
+    same(scene.loads[1].load.components[1], 2);
+    assert_int_equal(scene.loads[2].load.kind, LOAD_FORCE);
+    same(scene.loads[2].load.components[1], .5);
+    assert_string_equal(scene.loads[2].nodes.names[0], "tip");
     assert_true(scene.output.energy);
     assert_false(scene.output.stress);
     same(scene.output.interval, .01);
@@ -116,7 +117,7 @@ TEST(defaults)
     assert_true(!scene.solver.direct && !scene.solver.node_values && !scene.solver.pointwise_volume);
     same(scene.solver.tolerance, 1e-5);
     same(scene.solver.time_step_margin, .9);
-    assert_int_equal(scene.displacement_count + scene.contact_count + scene.pressure_count, 0);
+    assert_int_equal(scene.displacement_count + scene.contact_count + scene.load_count, 0);
     assert_int_equal(scene.output.frames, 0);
 }
 

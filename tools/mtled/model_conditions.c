@@ -77,12 +77,11 @@ static enum status set_fluid(const struct model *model, const struct scene_load 
     return STATUS_OK;
 }
 
-static enum status add_load(struct model *model, const struct scene_load *section, enum load_kind kind,
-                            struct load *load, struct error *error)
+static enum status add_load(struct model *model, const struct scene_load *section, struct load *load,
+                            struct error *error)
 {
     *load = section->load;
-    load->kind = kind;
-    if (kind == LOAD_FORCE) {
+    if (load->kind == LOAD_FORCE) {
         RETURN_IF_ERROR(
             model_nodes(model, &section->label, &section->nodes, &load->nodes, &load->node_count, error));
     } else {
@@ -92,37 +91,6 @@ static enum status add_load(struct model *model, const struct scene_load *sectio
         RETURN_IF_ERROR(set_fluid(model, section, load, error));
     }
     return model_add_curve(model, &section->label, &section->curve, &load->curve, error);
-}
-
-static enum status add_loads(struct model *model, struct error *error)
-{
-    const struct scene *scene = model->scene;
-    struct assembly *input = &model->assembly;
-    const struct {
-        const struct scene_load *sections;
-        int64_t count;
-        enum load_kind kind;
-    } kinds[] = {{scene->tractions, scene->traction_count, LOAD_TRACTION},
-                 {scene->forces, scene->force_count, LOAD_FORCE},
-                 {scene->pressures, scene->pressure_count, LOAD_PRESSURE}};
-    /* In time gravity acts from the start; in other scenes it grows smoothly. */
-    bool from_start = input->in_time || scene->duration > 0.0;
-    const struct scene_curve curve = {.kind = from_start ? CURVE_STEP : CURVE_SMOOTH};
-    struct load *loads;
-    RETURN_IF_ERROR(MODEL_ARRAY(model, &loads,
-                                scene->traction_count + scene->force_count + scene->pressure_count, error));
-    input->loads = loads;
-    memcpy(input->gravity, scene->gravity, sizeof input->gravity);
-    if (assembly_has_gravity(input)) {
-        RETURN_IF_ERROR(model_add_curve(model, NULL, &curve, &input->gravity_curve, error));
-    }
-    for (int k = 0; k < 3; k++) {
-        for (int64_t i = 0; i < kinds[k].count; i++) {
-            RETURN_IF_ERROR(
-                add_load(model, &kinds[k].sections[i], kinds[k].kind, &loads[input->load_count++], error));
-        }
-    }
-    return STATUS_OK;
 }
 
 static enum status add_contact(struct model *model, const struct scene_contact *section,
@@ -149,77 +117,63 @@ static enum status add_contact(struct model *model, const struct scene_contact *
     return model_add_curve(model, &section->label, &section->angle_curve, &motion->rotation_curve, error);
 }
 
-static enum status add_contacts(struct model *model, struct error *error)
+static enum status add_support(struct model *model, const struct scene_support *section,
+                               struct support_condition *support, struct error *error)
 {
-    const struct scene *scene = model->scene;
-    struct assembly *input = &model->assembly;
-    struct contact_condition *contacts;
-    RETURN_IF_ERROR(MODEL_ARRAY(model, &contacts, scene->contact_count, error));
-    input->contacts = contacts;
-    for (int64_t c = 0; c < scene->contact_count; c++) {
-        RETURN_IF_ERROR(add_contact(model, &scene->contacts[c], &contacts[c], error));
-        input->contact_count++;
-    }
-    return STATUS_OK;
-}
-
-static enum status add_supports(struct model *model, struct error *error)
-{
-    const struct scene *scene = model->scene;
-    struct assembly *input = &model->assembly;
     const struct scene_curve any = {.kind = CURVE_SMOOTH};
-    struct support_condition *supports;
-    RETURN_IF_ERROR(MODEL_ARRAY(model, &supports, scene->support_count, error));
-    input->supports = supports;
-    for (int64_t i = 0; i < scene->support_count; i++) {
-        const struct scene_support *section = &scene->supports[i];
-        supports[i] = section->condition;
-        supports[i].where = section->label.where;
-        RETURN_IF_ERROR(model_facets(model, &section->label, &section->facets, &supports[i].facets, error));
-        RETURN_IF_ERROR(model_add_curve(model, &section->label, &any, &supports[i].curve, error));
-        input->support_count++;
-    }
-    return STATUS_OK;
+    *support = section->condition;
+    support->where = section->label.where;
+    RETURN_IF_ERROR(model_facets(model, &section->label, &section->facets, &support->facets, error));
+    return model_add_curve(model, &section->label, &any, &support->curve, error);
 }
 
-static enum status add_membranes(struct model *model, struct error *error)
+static enum status add_membrane(struct model *model, const struct scene_membrane *section,
+                                struct membrane_condition *membrane, struct error *error)
 {
-    const struct scene *scene = model->scene;
-    struct assembly *input = &model->assembly;
-    struct membrane_condition *membranes;
-    RETURN_IF_ERROR(MODEL_ARRAY(model, &membranes, scene->membrane_count, error));
-    input->membranes = membranes;
-    for (int64_t i = 0; i < scene->membrane_count; i++) {
-        const struct scene_membrane *section = &scene->membranes[i];
-        membranes[i] = section->condition;
-        membranes[i].where = section->label.where;
-        RETURN_IF_ERROR(
-            model_add_curve(model, &section->label, &section->curve, &membranes[i].law.curve, error));
-        RETURN_IF_ERROR(model_facets(model, &section->label, &section->facets, &membranes[i].facets, error));
-        input->membrane_count++;
-    }
-    return STATUS_OK;
+    *membrane = section->condition;
+    membrane->where = section->label.where;
+    RETURN_IF_ERROR(model_add_curve(model, &section->label, &section->curve, &membrane->law.curve, error));
+    return model_facets(model, &section->label, &section->facets, &membrane->facets, error);
 }
+
+/* In time gravity acts from the start; in other scenes it grows smoothly. */
+static enum status add_gravity(struct model *model, struct error *error)
+{
+    struct assembly *input = &model->assembly;
+    bool from_start = input->in_time || model->scene->duration > 0.0;
+    const struct scene_curve curve = {.kind = from_start ? CURVE_STEP : CURVE_SMOOTH};
+    memcpy(input->gravity, model->scene->gravity, sizeof input->gravity);
+    return assembly_has_gravity(input) ? model_add_curve(model, NULL, &curve, &input->gravity_curve, error)
+                                       : STATUS_OK;
+}
+
+/* input->ITEMs: one for each of scene->SECTIONs, made of it by `add`. */
+#define ADD_EACH(type, item, section, add)                                                                   \
+    do {                                                                                                     \
+        struct type *added;                                                                                  \
+        input->item##_count = scene->section##_count;                                                        \
+        RETURN_IF_ERROR(MODEL_ARRAY(model, &added, input->item##_count, error));                             \
+        input->item##s = added;                                                                              \
+        for (int64_t i = 0; i < input->item##_count; i++) {                                                  \
+            RETURN_IF_ERROR(add(model, &scene->section##s[i], &added[i], error));                            \
+        }                                                                                                    \
+    } while (0)
 
 enum status model_conditions(struct model *model, struct error *error)
 {
     const struct scene *scene = model->scene;
     struct assembly *input = &model->assembly;
-    struct condition *conditions;
     input->in_time = scene->analysis == SCENE_DYNAMIC;
     input->pointwise_volume = scene->solver.pointwise_volume;
     input->node_values = scene->solver.node_values;
     input->direct = scene->solver.direct;
-    RETURN_IF_ERROR(MODEL_ARRAY(model, &conditions, scene->displacement_count, error));
-    input->conditions = conditions;
-    for (int64_t i = 0; i < scene->displacement_count; i++) {
-        RETURN_IF_ERROR(add_displacement(model, &scene->displacements[i], &conditions[i], error));
-        input->condition_count++;
-    }
-    RETURN_IF_ERROR(add_loads(model, error));
-    RETURN_IF_ERROR(add_supports(model, error));
-    RETURN_IF_ERROR(add_membranes(model, error));
-    return add_contacts(model, error);
+    ADD_EACH(condition, condition, displacement, add_displacement);
+    RETURN_IF_ERROR(add_gravity(model, error));
+    ADD_EACH(load, load, load, add_load);
+    ADD_EACH(support_condition, support, support, add_support);
+    ADD_EACH(membrane_condition, membrane, membrane, add_membrane);
+    ADD_EACH(contact_condition, contact, contact, add_contact);
+    return STATUS_OK;
 }
 
 enum status model_initial(const struct model *model, double *u, double *v, struct error *error)

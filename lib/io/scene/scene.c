@@ -178,6 +178,6 @@ void scene_free(struct scene *scene)
 {
     owned_free(&scene->owned);
     FREE_ALL(scene->files.names, scene->materials, scene->displacements, scene->contacts, scene->supports,
-             scene->membranes, scene->pressures, scene->tractions, scene->forces);
+             scene->membranes, scene->loads);
     *scene = (struct scene){0};
 }

@@ -85,7 +85,7 @@ struct scene_contact {
     struct scene_curve curve, angle_curve;
 };
 
-/* A pressure, traction or force. */
+/* A pressure, traction or force, load.kind. */
 struct scene_load {
     struct scene_label label;
     struct name_list facets; /* pressure, traction: at least one */
@@ -162,12 +162,8 @@ struct scene {
     int64_t support_count;
     struct scene_membrane *membranes;
     int64_t membrane_count;
-    struct scene_load *pressures;
-    int64_t pressure_count;
-    struct scene_load *tractions;
-    int64_t traction_count;
-    struct scene_load *forces;
-    int64_t force_count;
+    struct scene_load *loads;
+    int64_t load_count;
     struct scene_initial initial;
     struct scene_output output;
     struct scene_solver solver;

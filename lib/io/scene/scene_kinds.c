@@ -87,10 +87,17 @@ static enum status check_contact(const struct place *place, struct scene *scene)
 }
 
 /* A pressure is a value, or that of a fluid, which grows with the depth below its level. */
-static enum status check_pressure(const struct place *place, struct scene *scene)
+static enum status check_load(const struct place *place, struct scene *scene)
 {
-    (void)scene;
-    RETURN_IF_ERROR(place_require_one(place, KEYS{"value", "density", NULL}));
+    static const char *const names[] = {
+        [LOAD_PRESSURE] = "pressure", [LOAD_TRACTION] = "traction", [LOAD_FORCE] = "force"};
+    struct load *load = &scene->loads[scene->load_count - 1].load;
+    while (strcmp(names[load->kind], place->section->kind) != 0) {
+        load->kind++;
+    }
+    if (load->kind == LOAD_PRESSURE) {
+        RETURN_IF_ERROR(place_require_one(place, KEYS{"value", "density", NULL}));
+    }
     return place_has(place, "density")
                ? place_require(place, "level", "give a place at the level of the fluid, m")
                : STATUS_OK;
@@ -294,9 +301,9 @@ static const struct scene_kind kinds[] = {
     {"contact", contact_keys, check_contact, ITEMS(contacts, contact_count)},
     {"support", support_keys, check_support, ITEMS(supports, support_count)},
     {"membrane", membrane_keys, check_membrane, ITEMS(membranes, membrane_count)},
-    {"pressure", pressure_keys, check_pressure, ITEMS(pressures, pressure_count)},
-    {"traction", traction_keys, NULL, ITEMS(tractions, traction_count)},
-    {"force", force_keys, NULL, ITEMS(forces, force_count)},
+    {"pressure", pressure_keys, check_load, ITEMS(loads, load_count)},
+    {"traction", traction_keys, check_load, ITEMS(loads, load_count)},
+    {"force", force_keys, check_load, ITEMS(loads, load_count)},
     {"initial", initial_keys, NULL, false, 0, 0, 0},
     {"output", output_keys, check_output, false, 0, 0, 0},
     {"solver", solver_keys, check_solver, false, 0, 0, 0},
