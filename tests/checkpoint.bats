@@ -85,12 +85,12 @@ SCENE
     run -3 --separate-stderr mtled -c no/such/folder/run.ckpt run.scene table.mts
     [[ $stderr == "mtled: no/such/folder/run.ckpt.frames: No such file or directory" ]]
     run -3 --separate-stderr bash -c 'ulimit -f 4; mtled -c run.ckpt run.scene table.mts > /dev/null'
-    [[ $stderr == "mtled: run.ckpt.new: cannot write: File too large" ]]
+    [[ $stderr == "mtled: run.ckpt: cannot write: File too large" ]]
     [ -z "$(find . -name 'run.ckpt*')" ]
     begin_and_end TERM run.scene
     cp run.ckpt kept
     export -f worked
     run -143 --separate-stderr bash -c 'ulimit -f 4; mtled -c run.ckpt run.scene table.mts > /dev/null & worked $! 10; kill -TERM $!; wait $!'
-    [[ $stderr == *"no checkpoint: run.ckpt.new: cannot write: File too large"* ]]
+    [[ $stderr == *"no checkpoint: run.ckpt: cannot write: File too large"* ]]
     cmp run.ckpt kept
 }

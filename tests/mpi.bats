@@ -144,9 +144,9 @@ one_line() {
     pressed_block > block.scene
     one_line 3 'No space left on device' processes 3 -o /dev/full block.scene table.mts
     one_line 2 '/dev/full: is no regular file' processes 3 -c /dev/full block.scene table.mts
-    one_line 3 'nowhere/run.ckpt.new: No such file' processes 3 -c nowhere/run.ckpt block.scene table.mts
+    one_line 3 'nowhere/run.ckpt: No such file' processes 3 -c nowhere/run.ckpt block.scene table.mts
     printf 'trap "" XFSZ\nulimit -f 8\nexec mtled-mpi "$@"\n' > full.sh
-    one_line 3 'run.ckpt.new: cannot write: File too large' mpirun --quiet --mca btl self,tcp --oversubscribe --bind-to none \
+    one_line 3 'run.ckpt: cannot write: File too large' mpirun --quiet --mca btl self,tcp --oversubscribe --bind-to none \
         -n 1 bash full.sh -c run.ckpt -o out.dat block.scene table.mts : -n 2 mtled-mpi -c run.ckpt -o out.dat block.scene table.mts
     [ -z "$(find . -name 'run.ckpt*' -o -name 'out.dat*')" ]
 }

@@ -177,7 +177,6 @@ static void prepare(struct run *run)
     run_start(run);
     run_contacts_begin(run);
     run_folds_begin(run);
-    run_stability_begin(run);
     run_frames_begin(run);
     stream_give_back(run->stream);
 }

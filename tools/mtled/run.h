@@ -63,7 +63,7 @@ struct run_folds {
     bool stays;   /* it is in a state that is given, or the run is dynamic */
     double since; /* time as in struct progress */
     struct fold fold;
-    int64_t kept[5]; /* its whole numbers, as they are kept in a checkpoint: never negative */
+    int64_t kept[4]; /* its whole numbers, as they are kept in a checkpoint: never negative */
 };
 
 /* The first equilibrium of a quasi-static run that is not stable: it would buckle, wrinkle or crease. */
@@ -169,8 +169,7 @@ void run_frames_end(struct run *run);
 void run_frames_stop(struct run *run, const char *reason);
 void run_frames_free(struct run *run);
 
-/* What has been written, as state of the run; make it reach the disk. */
-MUST_CHECK enum status run_frames_state(struct run *run, const struct state *state, struct error *error);
+/* Make what has been written reach the disk. */
 MUST_CHECK enum status run_frames_sync(const struct run *run, struct error *error);
 
 /* Whether a section of this name belongs to the frames. */
@@ -216,8 +215,9 @@ void run_put_results(struct run *run);
 
 /* ---- checkpoints ---- */
 
-/* Before the first step: catch signals, and read the checkpoint file, if there is one; its tables of frames
- * are put into run->stream. The model must be built. Exits if the file is of another run. */
+/* Before the first step: catch signals, and read the checkpoint file, if there is one: what folds, stability
+ * and frames keep is restored, its tables of frames are put into run->stream. Exits if the file is of another
+ * run. */
 void run_checkpoint_begin(struct run *run);
 
 /* The state from which the run continues, or NULL. */
@@ -237,7 +237,7 @@ void run_checkpoint_remove(struct run *run);
 
 /* ---- folds (see solid/folds/folds.h): searched for while the run lasts, reported at its end ---- */
 
-/* Before the first step; the model must be built. With a checkpoint: what was seen before it. */
+/* Before the first step; the model must be built. */
 void run_folds_begin(struct run *run);
 void run_folds_free(struct run *run);
 
@@ -259,14 +259,8 @@ void run_folds_judge(struct run *run);
 
 /* ---- stability ---- */
 
-/* With a checkpoint: what was seen before it. */
-void run_stability_begin(struct run *run);
-
 /* Check a state of equilibrium. */
 void run_stability_check(struct run *run, double load);
-
-/* What was seen, as state of the run. */
-MUST_CHECK enum status run_stability_state(struct run *run, const struct state *state, struct error *error);
 
 /* Note where the body has left a state near equilibrium on the way, unless a fold or the present state's
  * stability is the verdict. */

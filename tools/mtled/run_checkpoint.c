@@ -76,6 +76,22 @@ static void compare_processes(const struct run *run)
     }
 }
 
+/* The state of what this program itself keeps from step to step: folds, stability, and the frames that have
+ * been written. */
+static enum status visit_own(struct run *run, const struct state *state, struct error *error)
+{
+    struct run_stability *stability = &run->stability;
+    struct run_frames *frames = &run->frames;
+    const struct state_value values[] = {{"stability.seen", STATE_FLAGS, &stability->seen, 1},
+                                         {"stability.since", STATE_NUMBERS, &stability->since, 1},
+                                         {"stability.node", STATE_COUNTS, &stability->node, 1},
+                                         {"frames.next", STATE_COUNTS, &frames->next, 1},
+                                         {"frames.sections", STATE_COUNTS, &frames->kept_sections, 1},
+                                         {"frames.bytes", STATE_COUNTS, &frames->kept_bytes, 1}};
+    RETURN_IF_ERROR(state_visit(state, NULL, values, sizeof values / sizeof *values, error));
+    return run_folds_state(run, state, error);
+}
+
 static void resume(struct run *run)
 {
     struct run_checkpoint *checkpoint = &run->checkpoint;
@@ -92,7 +108,7 @@ static void resume(struct run *run)
     tool_note(run->tool, "going on from step %lld, kept in %s", (long long)step, checkpoint->file);
     checkpoint->state = checkpoint_state(&checkpoint->restored);
     take_tables(run);
-    TOOL_TRY(run->tool, run_frames_state(run, &checkpoint->state, &error));
+    TOOL_TRY(run->tool, visit_own(run, &checkpoint->state, &error));
 }
 
 void run_checkpoint_begin(struct run *run)
@@ -140,36 +156,22 @@ static void put_view(struct run *run, const struct progress *progress, struct st
     tool_put(run->tool, stream, "u.last", TYPE_F8, nodes, dim, "unit=m", field);
 }
 
-/* The state of the run, and of the checks of this program. */
-struct whole_state {
-    struct run *run;
-    const struct progress *progress;
-};
-
-static enum status visit_whole(void *owner, const struct state *state, struct error *error)
-{
-    const struct whole_state *whole = owner;
-    RETURN_IF_ERROR(whole->progress->state(whole->progress->run, state, error));
-    RETURN_IF_ERROR(run_folds_state(whole->run, state, error));
-    RETURN_IF_ERROR(run_stability_state(whole->run, state, error));
-    return run_frames_state(whole->run, state, error);
-}
-
+/* Replace the file as a whole: whenever the program or the machine stops, it is complete. */
 static enum status write_now(struct run *run, const struct progress *progress, struct error *error)
 {
     struct run_checkpoint *checkpoint = &run->checkpoint;
-    struct stream stream = {0};
-    enum status status;
+    FREED_BY(stream_free) struct stream stream = {0};
+    struct output output;
+    struct state state;
     put_view(run, progress, &stream);
-    struct whole_state whole = {run, progress};
-    TRY(run_frames_sync(run, error));
-    TRY(checkpoint_fill(&stream, &checkpoint->identity, progress->step, visit_whole, &whole, error));
-    TRY(checkpoint_write(checkpoint->file, &stream, error));
+    RETURN_IF_ERROR(run_frames_sync(run, error));
+    RETURN_IF_ERROR(checkpoint_begin(&stream, &checkpoint->identity, progress->step, &state, error));
+    RETURN_IF_ERROR(progress->state(progress->run, &state, error));
+    RETURN_IF_ERROR(visit_own(run, &state, error));
+    RETURN_IF_ERROR(output_open(&output, checkpoint->file, false, error));
+    RETURN_IF_ERROR(output_end(&output, stream_write(&stream, output.file, false, error), error));
     checkpoint->is_there = true;
-done:
-    stream_free(&stream);
-    checkpoint->last = clock_seconds();
-    return status;
+    return STATUS_OK;
 }
 
 /* Write a checkpoint, by the first process. Returns a failure that must end the run. */
@@ -182,6 +184,7 @@ static enum status keep(struct run *run, const struct progress *progress, bool i
         return STATUS_OK;
     }
     checkpoint->status = write_now(run, progress, &checkpoint->error);
+    checkpoint->last = clock_seconds();
     if (checkpoint->status != STATUS_OK && !interrupted) {
         run_clear_progress(&run->display);
         if (is_first) { /* fail now rather than when the checkpoint is needed */

@@ -49,12 +49,8 @@ static enum status build(const struct assembly *input, struct run_folds *folds, 
 
 void run_folds_begin(struct run *run)
 {
-    const struct state *restored = run_checkpoint_state(run);
     TOOL_TRY(run->tool, build(&run->model->assembly, &run->folds, &error));
     run_folds_at_rest(run);
-    if (restored != NULL) {
-        TOOL_TRY(run->tool, run_folds_state(run, restored, &error));
-    }
 }
 
 void run_folds_free(struct run *run)
@@ -160,20 +156,18 @@ enum status run_folds_state(struct run *run, const struct state *state, struct e
     struct fold *fold = &folds->fold;
     int64_t *counts = folds->kept;
     counts[0] = (int64_t)fold->kind;
-    counts[1] = fold->count;
-    counts[2] = fold->cell + 1;
-    counts[3] = fold->facet[0] + 1;
-    counts[4] = fold->facet[1] + 1;
+    counts[1] = fold->cell + 1;
+    counts[2] = fold->facet[0] + 1;
+    counts[3] = fold->facet[1] + 1;
     const struct state_value values[] = {{"seen", STATE_FLAGS, &folds->seen, 1},
                                          {"stays", STATE_FLAGS, &folds->stays, 1},
                                          {"since", STATE_NUMBERS, &folds->since, 1},
-                                         {"fold", STATE_COUNTS, counts, 5},
+                                         {"fold", STATE_COUNTS, counts, 4},
                                          {"place", STATE_NUMBERS, fold->place, 3}};
     RETURN_IF_ERROR(state_visit(state, "folds", values, sizeof values / sizeof *values, error));
     fold->kind = (enum fold_kind)counts[0];
-    fold->count = counts[1];
-    fold->cell = counts[2] - 1;
-    fold->facet[0] = counts[3] - 1;
-    fold->facet[1] = counts[4] - 1;
+    fold->cell = counts[1] - 1;
+    fold->facet[0] = counts[2] - 1;
+    fold->facet[1] = counts[3] - 1;
     return STATUS_OK;
 }

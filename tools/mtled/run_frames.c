@@ -202,14 +202,6 @@ void run_frames_write(struct run *run, int64_t number)
     }
 }
 
-enum status run_frames_state(struct run *run, const struct state *state, struct error *error)
-{
-    const struct state_value values[] = {{"next", STATE_COUNTS, &run->frames.next, 1},
-                                         {"sections", STATE_COUNTS, &run->frames.kept_sections, 1},
-                                         {"bytes", STATE_COUNTS, &run->frames.kept_bytes, 1}};
-    return state_visit(state, "frames", values, sizeof values / sizeof *values, error);
-}
-
 enum status run_frames_sync(const struct run *run, struct error *error)
 {
     const struct run_frames *frames = &run->frames;

@@ -4,15 +4,6 @@
  * percent if it is so at singular corners only, and half if the body has become irregular. */
 static const double most_inelliptic = 0.1;
 
-void run_stability_begin(struct run *run)
-{
-    const struct state *restored = run_checkpoint_state(run);
-    run->stability = (struct run_stability){0};
-    if (restored != NULL) {
-        TOOL_TRY(run->tool, run_stability_state(run, restored, &error));
-    }
-}
-
 void run_stability_check(struct run *run, double load)
 {
     const struct stability *found = &run->model->system.stability;
@@ -43,15 +34,6 @@ void run_stability_elliptic(struct run *run, double load, bool final)
     if (final) {
         tool_note(run->tool, text, run->scene->path, when, 100.0 * found.share, place);
     }
-}
-
-enum status run_stability_state(struct run *run, const struct state *state, struct error *error)
-{
-    struct run_stability *s = &run->stability;
-    const struct state_value values[] = {{"seen", STATE_FLAGS, &s->seen, 1},
-                                         {"since", STATE_NUMBERS, &s->since, 1},
-                                         {"node", STATE_COUNTS, &s->node, 1}};
-    return state_visit(state, "stability", values, sizeof values / sizeof *values, error);
 }
 
 /* Words for a node and a share of the load. */

@@ -122,19 +122,18 @@ struct state checkpoint_state(const struct stream *stream)
     return (struct state){.visit = restore, .context = (void *)(uintptr_t)stream};
 }
 
-enum status checkpoint_fill(struct stream *stream, const struct checkpoint_identity *identity, int64_t step,
-                            state_function *function, void *owner, struct error *error)
+enum status checkpoint_begin(struct stream *stream, const struct checkpoint_identity *identity, int64_t step,
+                             struct state *state, struct error *error)
 {
     char attributes[128];
-    struct state state = {.visit = save, .context = stream};
     int64_t *value = NULL;
+    *state = (struct state){.visit = save, .context = stream};
     RETURN_IF_ERROR(NEW_ARRAY(&value, 1, error));
     *value = step;
     snprintf(attributes, sizeof attributes,
              "version=" MTS_VERSION " scene=%08" PRIx32 " input=%08" PRIx32 " cols=step", identity->scene,
              identity->input);
-    RETURN_IF_ERROR(stream_put(stream, "checkpoint", TYPE_I8, 1, 1, attributes, value, true, error));
-    return function(owner, &state, error);
+    return stream_put(stream, "checkpoint", TYPE_I8, 1, 1, attributes, value, true, error);
 }
 
 static bool is_same(const struct section *section, const char *key, uint32_t checksum)
@@ -179,11 +178,6 @@ static enum status fail_file(const char *file, struct error *error)
     return fail(error, STATUS_SYSTEM, "%s: %s", file, strerror(errno));
 }
 
-static enum status sibling_name(const char *file, const char *ending, char **name, struct error *error)
-{
-    return asprintf(name, "%s%s", file, ending) < 0 ? (*name = NULL, fail_memory(error, file)) : STATUS_OK;
-}
-
 /* A device, folder or link must not be replaced. */
 static enum status check_regular(const char *file, struct error *error)
 {
@@ -194,65 +188,15 @@ static enum status check_regular(const char *file, struct error *error)
     return STATUS_OK;
 }
 
-/* Write and sync a file under a temporary name. */
-static enum status write_new(const char *name, const struct stream *stream, struct error *error)
-{
-    int descriptor = open(name, O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0666);
-    FILE *file = descriptor >= 0 ? fdopen(descriptor, "w") : NULL;
-    if (file == NULL) {
-        enum status status = fail_file(name, error);
-        descriptor_close(&descriptor);
-        return status;
-    }
-    enum status status = fail_in(error, stream_write(stream, file, false, error), "%s", name);
-    if (status == STATUS_OK && fsync(descriptor) != 0) {
-        status = fail_file(name, error);
-    }
-    if (fclose(file) != 0 && status == STATUS_OK) {
-        status = fail_file(name, error);
-    }
-    return status;
-}
-
-/* Sync the folder, so that renamings reach the disk. */
-static enum status sync_folder(const char *file, struct error *error)
-{
-    const char *slash = strrchr(file, '/');
-    SCRATCH char *folder = slash == NULL   ? strdup(".")
-                           : slash == file ? strdup("/")
-                                           : strndup(file, (size_t)(slash - file));
-    if (folder == NULL) {
-        return fail_memory(error, file);
-    }
-    FREED_BY(descriptor_close) int descriptor = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (descriptor < 0 || (fsync(descriptor) != 0 && errno != EINVAL)) { /* EINVAL: fsync is not supported */
-        return fail_file(folder, error);
-    }
-    return STATUS_OK;
-}
-
-enum status checkpoint_write(const char *file, const struct stream *stream, struct error *error)
-{
-    SCRATCH char *new = NULL;
-    RETURN_IF_ERROR(sibling_name(file, ".new", &new, error));
-    RETURN_IF_ERROR(check_regular(file, error));
-    enum status status = write_new(new, stream, error);
-    if (status == STATUS_OK && rename(new, file) != 0) {
-        status = fail_file(file, error);
-    }
-    if (status != STATUS_OK) {
-        unlink(new);
-        return status;
-    }
-    return sync_folder(file, error);
-}
-
 enum status checkpoint_remove(const char *file, struct error *error)
 {
-    static const char *const endings[] = {".new", ".frames", ""};
+    static const char *const endings[] = {".frames", ""};
     for (size_t i = 0; i < sizeof endings / sizeof *endings; i++) {
         SCRATCH char *name = NULL;
-        RETURN_IF_ERROR(sibling_name(file, endings[i], &name, error));
+        if (asprintf(&name, "%s%s", file, endings[i]) < 0) {
+            name = NULL;
+            return fail_memory(error, file);
+        }
         if (unlink(name) != 0 && errno != ENOENT) {
             return fail_file(name, error);
         }

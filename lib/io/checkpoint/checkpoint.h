@@ -1,8 +1,7 @@
 /* Checkpoints: the state of a run (see base/state.h) as a stream in a file, from which the run can continue.
  *
- * The file is replaced as a whole: whenever the program or the machine stops, it is complete. It is a binary
- * stream: section `checkpoint` identifies the run, sections `state.*` hold its values; others are the
- * caller's. */
+ * It is a binary stream: section `checkpoint` identifies the run, sections `state.*` hold its values; others
+ * are the caller's. */
 #pragma once
 
 #include "base/state.h"
@@ -23,17 +22,12 @@ MUST_CHECK enum status checkpoint_identify(const struct scene *scene, const stru
 /* The checksum of a stream's sections: identity->input. */
 uint32_t checkpoint_identify_input(const struct stream *input);
 
-/* Add to a stream the section `checkpoint` and the state of `owner` that `function` visits. Numbers and
- * counts are not copied: write the stream before the run continues. */
-MUST_CHECK enum status checkpoint_fill(struct stream *stream, const struct checkpoint_identity *identity,
-                                       int64_t step, state_function *function, void *owner,
-                                       struct error *error);
+/* Add to a stream the section `checkpoint`; what visits *state is saved there. Numbers and counts are not
+ * copied: write the stream before the run continues. */
+MUST_CHECK enum status checkpoint_begin(struct stream *stream, const struct checkpoint_identity *identity,
+                                        int64_t step, struct state *state, struct error *error);
 
-/* Write a stream to FILE.new, sync it, and rename it to FILE. On failure STATUS_SYSTEM; FILE is then what it
- * was. */
-MUST_CHECK enum status checkpoint_write(const char *file, const struct stream *stream, struct error *error);
-
-/* Remove FILE, FILE.new and FILE.frames, as far as they exist. */
+/* Remove FILE and FILE.frames, as far as they exist. */
 MUST_CHECK enum status checkpoint_remove(const char *file, struct error *error);
 
 /* Read FILE, if it exists. STATUS_INPUT if it is damaged, or of another run. */
