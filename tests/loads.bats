@@ -203,7 +203,7 @@ immersed() {
     printf -- '-1 -0.005\n2 -0.005\n' > floor.tsv
     for section in 'traction a' 'contact d'; do
         with "/^\[$section/,/^facets/s/^facets = .*/facets = roof/"
-        refused 2 "[$section]: the mesh has no facet group 'roof'; present: " mtled edited.scene square.mts
+        refused 2 "[$section]: no facet group 'roof'; there are: " mtled edited.scene square.mts
         sed -i 's/roof/*, ymax/' edited.scene
         refused 2 "[$section]: *, the whole boundary, stands alone" mtled edited.scene square.mts
     done

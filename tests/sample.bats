@@ -146,5 +146,5 @@ exact='{ e = 100 + 50 * sin(300 * $1) * cos(200 * $2 + 1) + 30 * sin(250 * $3) }
     index=$(mts print cells.region points.mts | awk '$1 == 0 { n++ } END { print n }')
     [ "$(grep -vc '^#' some.tsv)" -eq "$index" ]
     [ "$index" -lt "$(grep -vc '^#' all.tsv)" ]
-    refused 2 "no region 'nowhere': there are $regions" sample -r "$first,nowhere" step.nii points.mts
+    refused 2 "no region 'nowhere'; there are: $regions" sample -r "$first,nowhere" step.nii points.mts
 }

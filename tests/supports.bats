@@ -99,7 +99,7 @@ drift() {
         refused 2 "run.scene:$1" mtled run.scene table.mts
     }
     try '11: [support ground]: facets: missing' 'normal = 1'
-    try "11: [support ground]: the mesh has no facet group 'roof'; present: " 'facets = roof\nnormal = 1'
+    try "11: [support ground]: no facet group 'roof'; there are: " 'facets = roof\nnormal = 1'
     try '11: [support ground]: normal and tangential: both are 0: give a stiffness in Pa/m' 'facets = ymin\nnormal = 0'
     try '13: [support ground]: normal: -1 is not at least 0' 'facets = ymin\nnormal = -1\ntangential = 1'
     try "13: [support ground]: tangential: 'nan' is not a finite number" 'facets = ymin\ntangential = nan'

@@ -338,7 +338,7 @@ END
     stack
     stack_scene > stack.scene
     try() { sed "$1" stack.scene > bad.scene && refused 2 "$2" mtled bad.scene stack.mts; }
-    try 's/^against.*/against = nothing/' "[contact pair]: the mesh has no facet group 'nothing'; present: "
+    try 's/^against.*/against = nothing/' "[contact pair]: no facet group 'nothing'; there are: "
     try 's/^against.*/against = low, up/' '[contact pair]: facets and against have 8 facets in common: name the same groups in both'
     try 's/^against.*/against = */' 'facets in common: name the same groups in both'
     try 's/^against.*/against = low/' '[contact pair]: no facet faces another one at rest: name groups that face each other'

@@ -248,8 +248,6 @@ END
             for (k in node) if (on[k, 0] && on[k, 1]) { n++; d = z[k] - .0145; mean += d; square += d * d }
             print n, mean / n, sqrt(square / n); exit !(n > 12 && sqrt(square / n) < 0.0012)
         }' <(mts print nodes.x body.mts) -
-    refused 2 "--part is gone: tag -f NAME=ball:X,Y,Z,RADIUS names facets; for masks see the end of voxels --help" \
-        voxels -h 5mm --part a=ball:0,0,0,1mm sphere.nii.gz
 }
 
 @test "the surface of a label as a table for contact, at a gap" {

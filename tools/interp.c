@@ -152,12 +152,10 @@ static enum status drop_outside(const struct tool *tool, const struct cells *cel
         field_outside(cells, spacing, skip ? 0.0 : FIELD_MARGIN, points->count, points->x, outside, error));
     for (int64_t i = 0; i < points->count; i++) {
         if (outside[i] && !skip) {
-            char place[96];
-            point_text(dim, points->x + i * dim, place);
             return fail(error, STATUS_INPUT,
                         "%s: row %jd at %s: farther from the body than the spacing of its nodes: is the "
                         "unit right? --skip-outside leaves such points out",
-                        file, i, place);
+                        file, i, POINT_TEXT(dim, points->x + i * dim));
         }
         if (!outside[i]) {
             memmove(points->x + kept * dim, points->x + i * dim, (size_t)dim * sizeof *points->x);

@@ -170,14 +170,13 @@ static void sample_image(const struct tool *tool, const struct request *request,
     if (outside == 0) {
         return;
     }
-    char place[96];
-    point_text(rows->dim, rows->x + first_outside * rows->dim, place);
     if (!request->has_outside) {
         tool_fail(tool, STATUS_INPUT,
                   "%s: row %jd at %s m, one of %jd of %jd: outside of %s, or not finite there: is the "
                   "unit right? "
                   "--outside V gives such points a value",
-                  rows->what, first_outside, place, outside, rows->count, name);
+                  rows->what, first_outside, POINT_TEXT(rows->dim, rows->x + first_outside * rows->dim),
+                  outside, rows->count, name);
     }
     tool_note(tool, "%s: %jd of %jd points are outside of %s, or it is not finite there: %g taken",
               rows->what, outside, rows->count, name, request->outside);
@@ -266,13 +265,11 @@ static void find_moduli(const struct tool *tool, const struct tissue *tissue, st
     TOOL_TRY(tool, NEW_ARRAY(&moduli, rows->count, &error));
     for (int64_t p = 0; p < rows->count; p++) {
         if (!tissue_moduli(tissue, rows->value + p * rows->cols, moduli[p], &beyond)) {
-            char place[96];
-            point_text(rows->dim, rows->x + p * rows->dim, place);
             tool_fail(tool, STATUS_INPUT,
                       "%s: row %jd at %s m: no tissue has a probability above 0 there (--outside 1 gives "
                       "points outside "
                       "of the images the mean of all)",
-                      rows->what, p, place);
+                      rows->what, p, POINT_TEXT(rows->dim, rows->x + p * rows->dim));
         }
     }
     if (beyond > 0) {

@@ -45,7 +45,6 @@ static const char usage[] =
     "                          only where that lies beyond it\n"
     "      --gap LENGTH        move it outward by LENGTH, less where it would cross itself\n"
     "  -l, --labels TABLE      names of labels\n"
-    "      --part NAME=PLACE ...  gone: tag names parts of the boundary\n"
     "  -s, --slice AXIS=PLACE  the slice nearest to PLACE on a world axis, as z=12mm\n"
     "      --largest           the largest connected body only\n"
     "  -u, --unit UNIT         unit of the file's lengths, instead of what it says: m, cm, mm, um, or a\n"
@@ -225,11 +224,6 @@ static void check_options(const struct tool *tool)
     }
     if (tool_given(tool, "surface") && tool_given(tool, "text")) {
         tool_fail(tool, STATUS_INPUT, "--surface goes without -t: it writes a table");
-    }
-    if (tool_given(tool, "part")) {
-        tool_fail(tool, STATUS_INPUT,
-                  "--part is gone: tag -f NAME=ball:X,Y,Z,RADIUS names facets; for masks see the end of "
-                  "voxels --help");
     }
     tool_requires(tool, "gap", "surface");
 }

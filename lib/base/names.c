@@ -71,3 +71,12 @@ int64_t names_find(const struct names *names, const char *name)
     }
     return -1;
 }
+
+enum status names_need(const struct names *names, const char *what, const char *name, int64_t *index,
+                       struct error *error)
+{
+    *index = names_find(names, name);
+    return *index >= 0 ? STATUS_OK
+                       : fail(error, STATUS_INPUT, "no %s '%s'; there are: %s", what, name,
+                              names->count > 0 ? names->list : "none");
+}

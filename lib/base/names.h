@@ -27,3 +27,7 @@ MUST_CHECK enum status names_change(struct names *names, int64_t index, const ch
 
 /* Index of `name`, or -1. */
 int64_t names_find(const struct names *names, const char *name);
+
+/* The same; STATUS_INPUT where there is no `what` of that name, with a list of those that there are. */
+MUST_CHECK enum status names_need(const struct names *names, const char *what, const char *name,
+                                  int64_t *index, struct error *error);

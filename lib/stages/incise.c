@@ -159,11 +159,10 @@ static enum status choose_cells(struct cut_body *whole, bool *kept, struct error
     const char *name = whole->options->region;
     SCRATCH struct piece *piece = NULL;
     int32_t count = 0;
-    int64_t left = 0, region = name != NULL ? names_find(&whole->regions.names, name) : -1;
+    int64_t left = 0, region = -1;
     NEW_SCRATCH(int32_t, part, body->cell_count, error);
-    if (name != NULL && region < 0) {
-        return fail(error, STATUS_INPUT, "no region '%s'; there are: %s", name,
-                    whole->regions.names.count > 0 ? whole->regions.names.list : "none");
+    if (name != NULL) {
+        RETURN_IF_ERROR(names_need(&whole->regions.names, "region", name, &region, error));
     }
     RETURN_IF_ERROR(list_pieces(whole, part, &piece, &count, error));
     RETURN_IF_ERROR(judge_pieces(whole, count, piece, error));

@@ -171,11 +171,8 @@ static enum status read_list(const char *names, const struct names *regions, int
     char *rest = list;
     RETURN_IF_ERROR(list == NULL ? fail_memory(error, "regions") : STATUS_OK);
     for (char *name; (name = strsep(&rest, ",")) != NULL;) {
-        int64_t region = names_find(regions, name);
-        if (region < 0) {
-            return fail(error, STATUS_INPUT, "--interface: no region '%s'; there are: %s", name,
-                        regions->list);
-        }
+        int64_t region;
+        RETURN_IF_ERROR(fail_in(error, names_need(regions, "region", name, &region, error), "--interface"));
         if (place[region] > 0) {
             return fail(error, STATUS_INPUT, "--interface: region '%s' stands twice", name);
         }

@@ -45,18 +45,17 @@ enum status cell_report_hanging(const struct cells *cells, int64_t named_count, 
                                 bool *parts, char said[512], struct error *error)
 {
     struct hanging_nodes joined, apart;
-    char place[96];
     said[0] = '\0';
     RETURN_IF_ERROR(cells_find_hanging(cells, named_count, named, &joined, &apart, error));
     *parts = joined.count > 0;
     const struct hanging_nodes *found = *parts ? &joined : &apart;
-    point_text(cells->dim, found->place, place);
     if (found->count > 0) {
         snprintf(said, 512,
                  "nodes on a facet of another %s, without being its corners: %jd, the first at %s m: the "
                  "sides are not joined there: mesh both alike (in gmsh: BooleanFragments, or Coherence, "
                  "before meshing); %s",
-                 *parts ? "cell" : "body or face of a slit", found->count, place,
+                 *parts ? "cell" : "body or face of a slit", found->count,
+                 POINT_TEXT(cells->dim, found->place),
                  *parts ? "the faces of a slit need names (physical groups)"
                         : "where they are to touch, the scene needs a contact");
     }
@@ -70,15 +69,14 @@ static const double bound = 0.1, noted_share = 0.1;
 void tool_note_thin(const struct tool *tool, const struct cells *cells)
 {
     struct thin_report thin;
-    char place[96];
     TOOL_TRY(tool, cells_find_thin(cells, bound, &thin, &error));
     if (thin.share > noted_share) {
-        point_text(cells->dim, thin.place, place);
         tool_note(
             tool,
             "%.0f %% of the boundary is on parts that are thin for their cells: where the worst is, %.3g m "
             "thick at %s m, the bending stiffness is %.2f (nu = 0.5) to %.2f (nu = 0) times the true "
             "one: cells of a third of the thickness, in all directions, bend well",
-            100.0 * thin.share, thin.thickness, place, 1.0 + thin.excess[0], 1.0 + thin.excess[1]);
+            100.0 * thin.share, thin.thickness, POINT_TEXT(cells->dim, thin.place), 1.0 + thin.excess[0],
+            1.0 + thin.excess[1]);
     }
 }

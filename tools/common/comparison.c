@@ -92,11 +92,8 @@ static enum status choose_nodes(const struct findings *findings, int64_t node_co
     if (name == NULL) {
         return STATUS_OK;
     }
-    int64_t region = names_find(names, name);
-    if (region < 0) {
-        return fail(error, STATUS_INPUT, "--region: no region '%s'; there are: %s", name,
-                    names->count > 0 ? names->list : "none");
-    }
+    int64_t region;
+    RETURN_IF_ERROR(fail_in(error, names_need(names, "region", name, &region, error), "--region"));
     RETURN_IF_ERROR(NEW_ARRAY(chosen, node_count, error));
     for (int64_t n = 0; n < node_count; n++) {
         (*chosen)[n] = findings->member[n * names->count + region];

@@ -43,8 +43,7 @@ static enum status interpolate(const struct model *model, const struct source *s
     const double *x = model->assembly.x + q * dim;
     double values[AXIS_MOST_ENTRIES], distance, spacing;
     double size = pow(model->assembly.weight[q], 1.0 / dim);
-    char place[96];
-    point_text(dim, x, place);
+    const char *place = POINT_TEXT(dim, x);
     RETURN_IF_ERROR(fail_in(error,
                             scattered_fit_evaluate(&source->fit, 0, x, values, &distance, &spacing, error),
                             "%s: fibres: %s: at %s", section->label.where, section->fibres, place));
@@ -67,8 +66,7 @@ static enum status directions_at(const struct model *model, const struct source 
     int dim = model->assembly.cells.dim;
     const double *plane = section->fibre_plane;
     double axis[3] = {0.0}, frame[6];
-    char place[96];
-    point_text(dim, model->assembly.x + q * dim, place);
+    const char *place = POINT_TEXT(dim, model->assembly.x + q * dim);
     if (source->axes == NULL) {
         RETURN_IF_ERROR(interpolate(model, source, q, axis, error));
     } else {

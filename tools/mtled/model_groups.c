@@ -7,11 +7,9 @@ static enum status choose(const struct scene_label *label, const struct name_lis
                           const struct names *present, bool *wanted, struct error *error)
 {
     for (int64_t i = 0; i < names->count; i++) {
-        int64_t group = names_find(present, names->names[i]);
-        if (group < 0) {
-            return fail(error, STATUS_INPUT, "%s: the mesh has no %s '%s'; present: %s", label->where, what,
-                        names->names[i], present->count > 0 ? present->list : "none");
-        }
+        int64_t group;
+        RETURN_IF_ERROR(
+            fail_in(error, names_need(present, what, names->names[i], &group, error), "%s", label->where));
         wanted[group] = true;
     }
     return STATUS_OK;

@@ -141,15 +141,13 @@ static void note_jump(struct model *model, const struct faces *faces, const stru
     const struct cells *cells = &model->assembly.cells;
     const int32_t *cell = faces->cell + 2 * found->face, *node = faces->node + found->face * cells->dim;
     double middle[3];
-    char place[96];
     vector_middle(cells->dim, cells->x, cells->dim, node, middle);
-    point_text(cells->dim, middle, place);
     int32_t first = regions->group[cell[0]], second = regions->group[cell[1]];
     (void)fail(&model->interfaces, STATUS_OK,
                "the shear modulus jumps %.3g : 1 between cells of %s%s%s at %s, and supports reach across: "
                "stress and forces are wrong there: %s",
                found->ratio, regions->names.name[first], first == second ? "" : " and ",
-               first == second ? "" : regions->names.name[second], place,
+               first == second ? "" : regions->names.name[second], POINT_TEXT(cells->dim, middle),
                first == second && !distance ? "smooth the table, or refine the mesh"
                                             : "let supports stop there (support without -i and --reach)");
 }

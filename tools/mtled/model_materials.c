@@ -73,12 +73,10 @@ static enum status materials_of_regions(const struct scene *scene, const struct 
     for (int64_t m = 0; m < scene->material_count; m++) {
         const struct scene_material *section = &scene->materials[m];
         for (int64_t i = 0; i < section->regions.count; i++) {
-            int64_t region = names_find(names, section->regions.names[i]);
-            if (region < 0) {
-                return fail(error, STATUS_INPUT, "%s: the mesh has no region '%s'; present: %s",
-                            section->label.where, section->regions.names[i],
-                            names->count > 0 ? names->list : "none");
-            }
+            int64_t region;
+            RETURN_IF_ERROR(fail_in(error,
+                                    names_need(names, "region", section->regions.names[i], &region, error),
+                                    "%s", section->label.where));
             material[region] = (int32_t)m;
         }
     }

@@ -19,10 +19,9 @@ struct point_section {
 static enum status fail_at(const struct point_section *p, int64_t row, struct error *error, const char *what)
 {
     const struct measured *measured = &p->condition->measured;
-    char place[96];
-    point_text(measured->dim, measured->x + row * measured->dim, place);
     return fail(error, STATUS_INPUT, "%s: points %s:%lld: at %s: %s", p->section->label.where,
-                p->section->condition.table, (long long)p->table->line[row], place, what);
+                p->section->condition.table, (long long)p->table->line[row],
+                POINT_TEXT(measured->dim, measured->x + row * measured->dim), what);
 }
 
 /* "FILE:LINE: [displacement NAME]: moved TABLE: ..." */

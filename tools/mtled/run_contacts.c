@@ -125,7 +125,6 @@ void run_sliding_judge(const struct run *run)
 {
     const struct solid_system *system = &run->model->system;
     struct sliding_error worst;
-    char place[96];
     if (system->sliding.facet_count == 0) {
         return;
     }
@@ -134,13 +133,13 @@ void run_sliding_judge(const struct run *run)
     TOOL_TRY(run->tool, sliding_measure(&system->sliding, system->dim, system->node_count, system->X, field,
                                         &worst, &error));
     if (worst.share > most_missing) {
-        point_text(system->dim, worst.place, place);
         tool_note(
             run->tool,
             "%s: [displacement %s]: the side slides by %.2g m where its radius is %.2g m, at %s m: it leaves "
             "its surface by %.2g m, as `normal` acts along the normal at rest: use a [contact] with that "
             "surface as rigid one, or smaller loads",
             run->scene->path, system->conditions[worst.section].name, worst.slide,
-            0.5 * worst.slide * worst.slide / worst.distance, place, worst.distance);
+            0.5 * worst.slide * worst.slide / worst.distance, POINT_TEXT(system->dim, worst.place),
+            worst.distance);
     }
 }

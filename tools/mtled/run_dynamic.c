@@ -19,11 +19,8 @@ static void judge(struct run *run, const struct dynamics_report *report)
     const struct solid_system *system = &run->model->system;
     double largest_move = field_largest(system->node_count, system->dim, run->u);
     bool inverted = report->outcome == DYNAMICS_INVERTED;
-    char place[96];
-    point_text(scene->dim,
-               inverted ? run->model->assembly.x + report->point * scene->dim
-                        : run->model->assembly.cells.x + report->node * scene->dim,
-               place);
+    const char *place = POINT_TEXT(scene->dim, inverted ? run->model->assembly.x + report->point * scene->dim
+                                                        : system->X + report->node * scene->dim);
     switch (report->outcome) {
     case DYNAMICS_DONE:
         if (report->largest_drift > DYNAMICS_NOTED_DRIFT) {

@@ -25,11 +25,11 @@ static void name_facet(const struct run *run, int64_t f, char *name, size_t size
 void run_folds_at_rest(const struct run *run)
 {
     const struct fold *fold = &run->folds.folds.at_rest;
-    char place[96], text[300], one[64];
+    char text[300], one[64];
     if (fold->kind == FOLD_NONE) {
         return;
     }
-    point_text(run->scene->dim, fold->place, place);
+    const char *place = POINT_TEXT(run->scene->dim, fold->place);
     if (fold->kind == FOLD_WITHIN) {
         snprintf(text, sizeof text, "bodies interpenetrate at rest: cell %lld at %s lies within another body",
                  (long long)fold->cell, place);
@@ -77,12 +77,11 @@ void run_folds_describe(const struct run *run, char *text, size_t size)
     const struct run_folds *folds = &run->folds;
     const struct fold *fold = &folds->fold;
     bool dynamic = run->scene->analysis == SCENE_DYNAMIC;
-    char place[96], one[64], other[64] = "", when[96];
+    char one[64], other[64] = "", when[96];
     text[0] = '\0';
     if (!folds->seen) {
         return;
     }
-    point_text(run->scene->dim, fold->place, place);
     snprintf(when, sizeof when,
              dynamic              ? "from t = %.4g s on"
              : folds->since < 1.0 ? "from %.4g of the load on"
@@ -96,7 +95,8 @@ void run_folds_describe(const struct run *run, char *text, size_t size)
         name_facet(run, fold->facet[1], other, sizeof other);
     }
     snprintf(text, size, "the body folds %s: %s%s at %s%s%s: %spress less, refine there", when,
-             words[fold->kind].before, one, place, words[fold->kind].behind, other,
+             words[fold->kind].before, one, POINT_TEXT(run->scene->dim, fold->place),
+             words[fold->kind].behind, other,
              words[fold->kind].touches && !touches_itself(run->scene)
                  ? "let it touch itself ([contact] with facets = *, against = *), "
                  : "");

@@ -16,7 +16,7 @@ static const char beyond_limit[] =
 static void judge(struct run *run, const struct statics_report *report)
 {
     const struct scene *scene = run->scene;
-    char place[96] = "", load[48] = "";
+    char load[48] = "";
     if (report->load < 1.0) {
         snprintf(load, sizeof load, " (at %.3g of the load)", report->load);
     }
@@ -37,7 +37,7 @@ static void judge(struct run *run, const struct statics_report *report)
         run_sliding_judge(run);
         return;
     }
-    point_text(scene->dim, run->model->system.X + report->worst_node * scene->dim, place);
+    const char *place = POINT_TEXT(scene->dim, run->model->system.X + report->worst_node * scene->dim);
     if (report->outcome == STATICS_STALLED) {
         run_contacts_penetrate(run, report->move, 0.0, false); /* as where nothing can give way */
         const char *remedy =
@@ -58,12 +58,11 @@ static void judge(struct run *run, const struct statics_report *report)
     }
     if (report->outcome == STATICS_INVERTED) {
         const double *x = run->model->assembly.x + report->inverted_point * scene->dim;
-        point_text(scene->dim, x, place);
         run_fail(run, STATUS_VERDICT,
                  "%s: step %lld%s: integration point %lld at %s inverts (J = %.3g), however slowly the load "
                  "grows: %s",
-                 scene->path, (long long)report->steps, load, (long long)report->inverted_point, place,
-                 report->least_jacobian, beyond_limit);
+                 scene->path, (long long)report->steps, load, (long long)report->inverted_point,
+                 POINT_TEXT(scene->dim, x), report->least_jacobian, beyond_limit);
     }
     if (report->outcome == STATICS_AWAY) {
         run_fail(run, STATUS_VERDICT,

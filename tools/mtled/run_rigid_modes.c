@@ -114,7 +114,7 @@ static void direction_text(int dim, const double *direction, char text[96])
 /* text = "may move along (1, 0), may turn about (0, 0.1)". */
 static void modes_text(int dim, double size, const struct rigid_modes *modes, char *text, size_t room)
 {
-    char what[96], where[96];
+    char what[96];
     snprintf(text, room, "%s", modes->translations == dim ? "may move along any direction" : "");
     for (int k = 0; k < modes->translations && modes->translations < dim; k++) {
         direction_text(dim, modes->along[k], what);
@@ -129,28 +129,36 @@ static void modes_text(int dim, double size, const struct rigid_modes *modes, ch
         for (int a = 0; a < dim; a++) {
             through[a] = fabs(modes->through[k][a]) > 1e-9 * size ? modes->through[k][a] : 0.0;
         }
-        point_text(dim, through, where);
         direction_text(dim, modes->axis[k], what);
         text_append(text, room, "%smay turn about %s%s%s%s", text[0] != '\0' ? ", " : "",
-                    dim == 2 ? "" : "the axis through ", where, dim == 2 ? "" : " along ",
+                    dim == 2 ? "" : "the axis through ", POINT_TEXT(dim, through), dim == 2 ? "" : " along ",
                     dim == 2 ? "" : what);
     }
 }
 
-/* text = "the body", or "body 2 (region lump, near (0.1, 0.2))", numbered from 1. */
-static enum status body_text(const struct model *model, const struct bodies *bodies, int64_t b,
-                             char text[256], struct error *error)
+/* What a body may do, and its name: "the body", or "body 2 (region lump, near (0.1, 0.2))", from 1. */
+struct told {
+    char body[256], what[512];
+};
+
+static struct told tell(const struct run *run, const struct bodies *bodies, int64_t b)
 {
-    char place[96];
+    const struct assembly *input = &run->model->assembly;
     FREED_BY(groups_free) struct groups regions = {0};
-    snprintf(text, 256, "the body");
+    struct told told = {.body = "the body"};
+    modes_text(input->cells.dim, input->extent, &bodies->modes[b], told.what, sizeof told.what);
     if (bodies->count > 1) {
-        RETURN_IF_ERROR(stream_regions(model->stream, true, &regions, error));
-        point_text(model->assembly.cells.dim, bodies->modes[b].centre, place);
-        snprintf(text, 256, "body %lld (region %s, near %s)", (long long)b + 1,
-                 regions.names.name[regions.group[bodies->cell[b]]], place);
+        TOOL_TRY(run->tool, stream_regions(run->stream, true, &regions, &error));
+        snprintf(told.body, sizeof told.body, "body %lld (region %s, near %s)", (long long)b + 1,
+                 regions.names.name[regions.group[bodies->cell[b]]],
+                 POINT_TEXT(input->cells.dim, bodies->modes[b].centre));
     }
-    return STATUS_OK;
+    return told;
+}
+
+static bool is_loose(const struct bodies *bodies, int64_t b)
+{
+    return bodies->modes[b].translations + bodies->modes[b].turns > 0;
 }
 
 /* The number of bodies from `first` on that may move or turn, and on which no contact acts. */
@@ -158,7 +166,7 @@ static int64_t count_free(const struct bodies *bodies, int64_t first)
 {
     int64_t count = 0;
     for (int64_t b = first; b < bodies->count; b++) {
-        count += !bodies->touches[b] && bodies->modes[b].translations + bodies->modes[b].turns > 0;
+        count += !bodies->touches[b] && is_loose(bodies, b);
     }
     return count;
 }
@@ -166,16 +174,12 @@ static int64_t count_free(const struct bodies *bodies, int64_t first)
 void run_check_rigid_modes(struct run *run)
 {
     FREED_BY(bodies_free) struct bodies bodies = {0};
-    const struct model *model = run->model;
-    TOOL_TRY(run->tool, bodies_find(model, &bodies, &error));
+    TOOL_TRY(run->tool, bodies_find(run->model, &bodies, &error));
     for (int64_t b = 0; b < bodies.count; b++) {
-        const struct rigid_modes *modes = &bodies.modes[b];
-        char body[256], what[512];
-        if (modes->translations + modes->turns == 0) {
+        if (!is_loose(&bodies, b)) {
             continue;
         }
-        modes_text(model->assembly.cells.dim, model->assembly.extent, modes, what, sizeof what);
-        TOOL_TRY(run->tool, body_text(model, &bodies, b, body, &error));
+        struct told told = tell(run, &bodies, b);
         if (!bodies.touches[b]) {
             int64_t more = count_free(&bodies, b + 1);
             char others[64] = "";
@@ -185,10 +189,11 @@ void run_check_rigid_modes(struct run *run)
             }
             run_fail(run, STATUS_VERDICT,
                      "%s: nothing holds %s: it %s: add a [displacement] that forbids that%s",
-                     run->scene->path, body, what, others);
+                     run->scene->path, told.body, told.what, others);
         }
         if (run->verbose) {
-            tool_note(run->tool, "%s: only contact holds %s: it %s otherwise", run->scene->path, body, what);
+            tool_note(run->tool, "%s: only contact holds %s: it %s otherwise", run->scene->path, told.body,
+                      told.what);
         }
     }
 }
@@ -218,23 +223,20 @@ static void mark_pressed(const struct run *run, const struct bodies *bodies, dou
 void run_check_lost(const struct run *run, double error_left)
 {
     FREED_BY(bodies_free) struct bodies bodies = {0};
-    const struct model *model = run->model;
-    if (model->system.contact_count == 0) {
+    if (run->model->system.contact_count == 0) {
         return;
     }
-    TOOL_TRY(run->tool, bodies_find(model, &bodies, &error));
+    TOOL_TRY(run->tool, bodies_find(run->model, &bodies, &error));
     mark_pressed(run, &bodies, error_left);
     for (int64_t b = 0; b < bodies.count; b++) {
-        char body[256], what[512];
-        if (bodies.modes[b].translations + bodies.modes[b].turns == 0 || bodies.touches[b]) {
+        if (!is_loose(&bodies, b) || bodies.touches[b]) {
             continue;
         }
-        modes_text(model->assembly.cells.dim, model->assembly.extent, &bodies.modes[b], what, sizeof what);
-        TOOL_TRY(run->tool, body_text(model, &bodies, b, body, &error));
+        struct told told = tell(run, &bodies, b);
         tool_note(
             run->tool,
             "%s: at the end no contact presses %s, which nothing else holds: it %s, and lies anywhere; it "
             "may have slipped out of its contacts or turned over: frames show when",
-            run->scene->path, body, what);
+            run->scene->path, told.body, told.what);
     }
 }

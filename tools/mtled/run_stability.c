@@ -19,11 +19,11 @@ void run_stability_elliptic(struct run *run, double load, bool final)
         "%s: what it does there depends on the mesh: use another model, as "
         "neo-hookean, or a smaller load";
     struct inelliptic found = body_inelliptic(&run->model->system.body);
-    char place[96], when[48] = "at the whole load,";
+    char when[48] = "at the whole load,";
     if (found.point < 0) {
         return;
     }
-    point_text(run->scene->dim, run->model->assembly.x + found.point * run->scene->dim, place);
+    const char *place = POINT_TEXT(run->scene->dim, run->model->assembly.x + found.point * run->scene->dim);
     if (load < 1.0) {
         snprintf(when, sizeof when, "at %.4g of the load,", load);
     }
@@ -36,8 +36,8 @@ void run_stability_elliptic(struct run *run, double load, bool final)
     }
 }
 
-/* Words for a node and a share of the load. */
-static void describe(const struct run *run, int64_t node, double load, char place[96], char when[48])
+/* Words for a share of the load, and for the place of a node. */
+static void describe(const struct run *run, double load, int64_t node, char when[48], char place[96])
 {
     const struct solid_system *system = &run->model->system;
     point_text(system->dim, system->X + node * system->dim, place);
@@ -50,9 +50,9 @@ static void describe(const struct run *run, int64_t node, double load, char plac
 void run_stability_left(const struct run *run)
 {
     const struct stability *found = &run->model->system.stability;
-    char place[96], when[48];
+    char when[48], place[96];
     if (found->left && !run->folds.seen && !run->stability.seen) {
-        describe(run, found->left_node, found->left_load, place, when);
+        describe(run, found->left_load, found->left_node, when, place);
         tool_note(
             run->tool,
             "%s: %s the body leaves a state near equilibrium, most of all at %s: it buckles, wrinkles or "
@@ -64,10 +64,10 @@ void run_stability_left(const struct run *run)
 void run_stability_describe(const struct run *run, char *text, size_t size)
 {
     const struct run_stability *stability = &run->stability;
-    char place[96], when[48];
+    char when[48], place[96];
     text[0] = '\0';
     if (stability->seen) {
-        describe(run, stability->node, stability->since, place, when);
+        describe(run, stability->since, stability->node, when, place);
         snprintf(text, size,
                  "the body folds %s: its equilibrium is not stable, and would buckle or wrinkle, most of all "
                  "at %s",

@@ -33,10 +33,8 @@ static void choose_regions(const struct tool *tool, const struct stream *stream,
                                          " of a region", &error));
     TOOL_SCRATCH(tool, bool, wanted, names->count);
     for (char *name; (name = strsep(&list, ",")) != NULL;) {
-        int64_t index = names_find(names, name);
-        if (index < 0) {
-            tool_fail(tool, STATUS_INPUT, "-r: no region '%s': there are %s", name, names->list);
-        }
+        int64_t index;
+        TOOL_TRY(tool, fail_in(&error, names_need(names, "region", name, &index, &error), "-r"));
         wanted[index] = true;
     }
     for (int64_t q = 0; q < rows->count; q++) {

@@ -16,13 +16,10 @@ struct support_options support_defaults(int dim)
         .factor = dim == 2 ? 1.8 : 2.0, .widen = true, .gradient_bound = 6.0, .mls = mls_default(dim)};
 }
 
-void point_text(int dim, const double *x, char text[96])
+const char *point_text(int dim, const double *x, char text[96])
 {
-    if (dim == 2) {
-        snprintf(text, 96, "(%.6g, %.6g)", x[0], x[1]);
-    } else {
-        snprintf(text, 96, "(%.6g, %.6g, %.6g)", x[0], x[1], x[2]);
-    }
+    snprintf(text, 96, dim == 2 ? "(%.6g, %.6g)" : "(%.6g, %.6g, %.6g)", x[0], x[1], x[dim - 1]);
+    return text;
 }
 
 static void worker_free(int64_t body_count, struct worker *worker)

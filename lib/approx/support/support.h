@@ -77,5 +77,7 @@ MUST_CHECK enum status support_build_among(const struct support_options *options
                                            struct support_lists *lists, struct error *error);
 void support_free(struct support_lists *lists);
 
-/* Print "(x, y[, z])" of a point into text[96], for messages. */
-void point_text(int dim, const double *x, char text[96]);
+/* Print "(x, y[, z])" of a point into text[96], for messages; returns text. POINT_TEXT: a text that lasts as
+ * long as the block. */
+const char *point_text(int dim, const double *x, char text[96]);
+#define POINT_TEXT(dim, x) point_text((dim), (x), (char[96]){""})

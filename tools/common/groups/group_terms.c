@@ -43,56 +43,35 @@ static enum status check_direction(const struct term *term, const double *direct
 
 /* ---- by place ---- */
 
-static enum status choose_box(const struct term *term)
+/* box:LOW,HIGH, ball:CENTRE,RADIUS, half:POINT,NORMAL and plane:POINT,NORMAL[,DISTANCE] */
+static enum status choose_shape(const struct term *term)
 {
     int dim = term->body->cells.dim;
-    struct shape shape = {.kind = SHAPE_BOX, .slack = COARSE_ROUND_OFF * term->body->diagonal};
+    double diagonal = term->body->diagonal;
+    enum shape_kind kind = term->text[0] == 'h'   ? SHAPE_HALF
+                           : term->text[0] == 'p' ? SHAPE_PLANE
+                           : term->text[1] == 'o' ? SHAPE_BOX
+                                                  : SHAPE_BALL;
+    bool flat = kind == SHAPE_HALF || kind == SHAPE_PLANE,
+         sized = kind == SHAPE_BALL || term->count > 2 * dim;
+    struct shape shape = {.kind = kind,
+                          .size = sized                 ? term->value[term->count - 1] * term->unit
+                                  : kind == SHAPE_PLANE ? FLATNESS * diagonal
+                                                        : 0,
+                          .slack = COARSE_ROUND_OFF * diagonal};
     for (int k = 0; k < dim; k++) {
         shape.a[k] = term->value[k] * term->unit;
-        shape.b[k] = term->value[dim + k] * term->unit;
-        if (!(shape.a[k] <= shape.b[k])) {
+        shape.b[k] = term->value[dim + k] * (flat ? 1 : term->unit);
+        if (kind == SHAPE_BOX && !(shape.a[k] <= shape.b[k])) {
             return fail(term->error, STATUS_INPUT,
                         "%.100s: the box is inside out along %c: the low corner comes first", term->text,
                         "xyz"[k]);
         }
     }
-    items_in_shape(&term->body->items[term->kind], &shape, term->chosen);
-    return STATUS_OK;
-}
-
-static enum status choose_ball(const struct term *term)
-{
-    int dim = term->body->cells.dim;
-    struct shape shape = {.kind = SHAPE_BALL, .slack = COARSE_ROUND_OFF * term->body->diagonal};
-    for (int k = 0; k < dim; k++) {
-        shape.a[k] = term->value[k] * term->unit;
-    }
-    shape.size = term->value[dim] * term->unit;
-    if (!(shape.size > 0)) {
-        return fail(term->error, STATUS_INPUT, "%.100s: the radius is not positive", term->text);
-    }
-    items_in_shape(&term->body->items[term->kind], &shape, term->chosen);
-    return STATUS_OK;
-}
-
-/* half:POINT,NORMAL and plane:POINT,NORMAL[,DISTANCE] */
-static enum status choose_plane(const struct term *term)
-{
-    int dim = term->body->cells.dim;
-    bool half = term->text[0] == 'h';
-    struct shape shape = {.kind = half ? SHAPE_HALF : SHAPE_PLANE,
-                          .slack = COARSE_ROUND_OFF * term->body->diagonal};
-    for (int k = 0; k < dim; k++) {
-        shape.a[k] = term->value[k] * term->unit;
-        shape.b[k] = term->value[dim + k];
-    }
-    RETURN_IF_ERROR(check_direction(term, shape.b));
-    shape.size = half ? 0 : FLATNESS * term->body->diagonal;
-    if (term->count > 2 * dim) {
-        shape.size = term->value[2 * dim] * term->unit;
-        if (!(shape.size >= 0)) {
-            return fail(term->error, STATUS_INPUT, "%.100s: the distance is negative", term->text);
-        }
+    RETURN_IF_ERROR(flat ? check_direction(term, shape.b) : STATUS_OK);
+    if (!(shape.size >= 0) || (kind == SHAPE_BALL && shape.size == 0)) {
+        return fail(term->error, STATUS_INPUT, "%.100s: the %s", term->text,
+                    kind == SHAPE_BALL ? "radius is not positive" : "distance is negative");
     }
     items_in_shape(&term->body->items[term->kind], &shape, term->chosen);
     return STATUS_OK;
@@ -306,10 +285,10 @@ static const struct {
     const char *forms[2]; /* in 2D and 3D, for messages; NULL: other arguments */
     bool optional, by_number;
 } terms[] = {
-    {"box", choose_box, 2, 0, {"X0,Y0,X1,Y1", "X0,Y0,Z0,X1,Y1,Z1"}, false, false},
-    {"ball", choose_ball, 1, 1, {"X,Y,RADIUS", "X,Y,Z,RADIUS"}, false, false},
-    {"half", choose_plane, 2, 0, {"X,Y,NX,NY", "X,Y,Z,NX,NY,NZ"}, false, false},
-    {"plane", choose_plane, 2, 0, {"X,Y,NX,NY[,DISTANCE]", "X,Y,Z,NX,NY,NZ[,DISTANCE]"}, true, false},
+    {"box", choose_shape, 2, 0, {"X0,Y0,X1,Y1", "X0,Y0,Z0,X1,Y1,Z1"}, false, false},
+    {"ball", choose_shape, 1, 1, {"X,Y,RADIUS", "X,Y,Z,RADIUS"}, false, false},
+    {"half", choose_shape, 2, 0, {"X,Y,NX,NY", "X,Y,Z,NX,NY,NZ"}, false, false},
+    {"plane", choose_shape, 2, 0, {"X,Y,NX,NY[,DISTANCE]", "X,Y,Z,NX,NY,NZ[,DISTANCE]"}, true, false},
     {"normal", choose_normal, 1, 1, {"NX,NY,DEGREES", "NX,NY,NZ,DEGREES"}, false, false},
     {"side", choose_part, 1, 1, {"K,DEGREES or X,Y,DEGREES", "K,DEGREES or X,Y,Z,DEGREES"}, false, true},
     {"body", choose_part, 1, 0, {"K or a point", "K or a point"}, false, true},
