@@ -161,11 +161,11 @@ static int recover(struct tool *tool)
 }
 
 /* Whether the name matches one of the patterns; marks in used[] those that it matches. */
-static bool matches(const char *name, char *const patterns[], int count, bool used[])
+static bool matches(const char *name, const struct names *patterns, bool used[])
 {
     bool any = false;
-    for (int i = 0; i < count; i++) {
-        if (fnmatch(patterns[i], name, 0) == 0) {
+    for (int64_t i = 0; i < patterns->count; i++) {
+        if (fnmatch(patterns->name[i], name, 0) == 0) {
             used[i] = any = true;
         }
     }
@@ -174,29 +174,23 @@ static bool matches(const char *name, char *const patterns[], int count, bool us
 
 static int select_sections(struct tool *tool)
 {
-    enum { MOST = 64 };
     bool keep = strcmp(tool->operands[0], "keep") == 0;
-    char *patterns[MOST];
-    bool used[MOST] = {false};
-    int count = 0;
     FREED_BY(stream_free) struct stream stream = {0};
-    SCRATCH char *list_of_patterns = tool_memory(tool, strdup(tool->operands[1]));
-    for (char *rest = list_of_patterns, *pattern; (pattern = strsep(&rest, ",")) != NULL;) {
-        if (count == MOST || *pattern == '\0') {
-            tool_fail(tool, STATUS_INPUT, "'%s' is not a list of at most %d patterns", tool->operands[1],
-                      MOST);
-        }
-        patterns[count++] = pattern;
+    FREED_BY(names_free) struct names patterns = {0};
+    TOOL_TRY(tool, names_split(&patterns, tool->operands[1], &error));
+    if (patterns.count == 0) {
+        tool_fail(tool, STATUS_INPUT, "%s: the list of patterns is empty", tool->operands[0]);
     }
+    TOOL_SCRATCH(tool, bool, used, patterns.count);
     tool_read(tool, tool->operands[2], &stream);
     for (int64_t i = stream.section_count - 1; i >= 0; i--) {
-        if (matches(stream.sections[i].name, patterns, count, used) != keep) {
+        if (matches(stream.sections[i].name, &patterns, used) != keep) {
             stream_remove(&stream, stream.sections[i].name);
         }
     }
-    for (int i = 0; i < count; i++) {
+    for (int64_t i = 0; i < patterns.count; i++) {
         if (!used[i]) {
-            tool_fail(tool, STATUS_INPUT, "no section matches '%s': see mts list", patterns[i]);
+            tool_fail(tool, STATUS_INPUT, "no section matches '%s': see mts list", patterns.name[i]);
         }
     }
     tool_write(tool, &stream);

@@ -99,31 +99,18 @@ static char *attributes_of_rows(const struct run *run, const char *unit, const c
                                 const char *components, int64_t rows, bool in_one_row)
 {
     const struct scene *scene = run->scene;
-    int64_t each = (int64_t)strlen(components);
-    char *attributes = NULL;
-    size_t size;
-    FILE *text = open_memstream(&attributes, &size);
-    if (text != NULL) {
-        fprintf(text, "unit=%s", !in_one_row ? unit : scene->duration > 0.0 ? "s" : "1");
-        for (int64_t i = 0; in_one_row && i < rows * each; i++) {
-            fprintf(text, ",%s", unit);
+    FREED_BY(names_free) struct names units = {0}, columns = {0};
+    TOOL_TRY(run->tool, names_add(&units, !in_one_row ? unit : scene->duration > 0.0 ? "s" : "1", &error));
+    TOOL_TRY(run->tool, names_split(&columns, in_one_row ? "time" : "", &error));
+    for (int64_t r = 0; r < rows; r++) {
+        for (const char *letter = components; in_one_row && *letter != '\0'; letter++) {
+            TOOL_TRY(run->tool, names_add(&units, unit, &error));
+            TOOL_TRY(run->tool, names_print(&columns, &error, "%s.%c", name_of_row(scene, r), *letter));
         }
-        fprintf(text, "%s%s", more, in_one_row ? " cols=time" : " rows=");
-        for (int64_t r = 0; r < rows; r++) {
-            for (int64_t a = 0; in_one_row && a < each; a++) {
-                fprintf(text, ",%s.%c", name_of_row(scene, r), components[a]);
-            }
-            if (!in_one_row) {
-                fprintf(text, "%s%s", r > 0 ? "," : "", name_of_row(scene, r));
-            }
-        }
+        TOOL_TRY(run->tool, in_one_row ? STATUS_OK : names_add(&columns, name_of_row(scene, r), &error));
     }
-    bool failed = text == NULL || fflush(text) != 0 || ferror(text) != 0;
-    if ((text != NULL && fclose(text) != 0) || failed ||
-        attributes == NULL) { /* fclose cuts it to size, unchecked */
-        tool_fail(run->tool, STATUS_SYSTEM, "out of memory");
-    }
-    return attributes;
+    return tool_text(run->tool, "unit=%s%s %s=%s", units.list, more, in_one_row ? "cols" : "rows",
+                     columns.list);
 }
 
 /* Put section `name`, or a row of its table over frames; takes values[rows * components]. */

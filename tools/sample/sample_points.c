@@ -20,21 +20,23 @@ void sample_points_table(const struct tool *tool, const char *file, double unit,
     }
 }
 
-static void choose_regions(const struct tool *tool, const struct stream *stream, char *list,
+static void choose_regions(const struct tool *tool, const struct stream *stream, const char *list,
                            struct sample_points *rows)
 {
     FREED_BY(groups_free) struct groups regions = {0};
-    const struct names *names = &regions.names;
+    FREED_BY(names_free) struct names given = {0};
     const struct section *cell;
     int64_t kept = 0;
     TOOL_TRY(tool, stream_view(stream, "points.cell", &cell, &error));
     TOOL_TRY(tool, stream_regions(stream, true, &regions, &error));
     TOOL_TRY(tool, section_check_indices(cell, 0, stream_find(stream, "cells.region")->rows, "cell",
                                          " of a region", &error));
-    TOOL_SCRATCH(tool, bool, wanted, names->count);
-    for (char *name; (name = strsep(&list, ",")) != NULL;) {
+    TOOL_TRY(tool, names_split(&given, list, &error));
+    TOOL_SCRATCH(tool, bool, wanted, regions.names.count);
+    for (int64_t i = 0; i < given.count; i++) {
         int64_t index;
-        TOOL_TRY(tool, fail_in(&error, names_need(names, "region", name, &index, &error), "-r"));
+        TOOL_TRY(tool,
+                 fail_in(&error, names_need(&regions.names, "region", given.name[i], &index, &error), "-r"));
         wanted[index] = true;
     }
     for (int64_t q = 0; q < rows->count; q++) {
@@ -62,7 +64,6 @@ void sample_points_section(const struct tool *tool, const char *file, const char
     TOOL_TRY(tool, NEW_ARRAY(&rows->x, at->rows * at->cols, &error));
     memcpy(rows->x, at->data, (size_t)(at->rows * at->cols) * sizeof *rows->x);
     if (regions != NULL) {
-        SCRATCH char *list = tool_memory(tool, strdup(regions));
-        choose_regions(tool, stream, list, rows);
+        choose_regions(tool, stream, regions, rows);
     }
 }

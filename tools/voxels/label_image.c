@@ -139,24 +139,16 @@ static void set_labels(const struct tool *tool, const struct image *source, stru
 
 /* ---- space ---- */
 
-/* The axis of the grid that is parallel to a world axis, with the two others perpendicular to it. Exits if
- * there is none. */
+/* The axis of the grid whose slices are perpendicular to a world axis. Exits if there is none. */
 static int grid_axis(const struct tool *tool, const struct image *image, int world)
 {
-    int found = 3;
-    bool oblique = false;
     for (int e = 0; e < 3; e++) {
-        double along = fabs(image->to_world[world][e]) / image_step(image, e);
-        if (along > 1 - 1e-6) {
-            found = e;
+        if (image_axis_across(image, e) == world) {
+            return e;
         }
-        oblique = oblique || (along > 1e-3 && along <= 1 - 1e-6);
     }
-    if (oblique || found == 3) {
-        tool_fail(tool, STATUS_INPUT, "-s: the image's slices are oblique to the axis %c: resample it first",
-                  'x' + world);
-    }
-    return found;
+    tool_fail(tool, STATUS_INPUT, "-s: the image's slices are oblique to the axis %c: resample it first",
+              'x' + world);
 }
 
 static void take_slice(struct image *image, int axis, size_t slice)
@@ -202,7 +194,7 @@ static void choose_slice(const struct tool *tool, struct image *image, const cha
 /* Set the plane of an image of one slice, which must be perpendicular to a world axis. */
 static void set_plane(const struct tool *tool, const struct image *image, struct labels *labels)
 {
-    int flat = -1, flats = 0, count = 0, world = 0;
+    int flat = -1, flats = 0, count = 0;
     for (int d = 0; d < 3; d++) {
         if (image->size[d] == 1) {
             flat = d;
@@ -216,13 +208,9 @@ static void set_plane(const struct tool *tool, const struct image *image, struct
     if (labels->dim == 3) {
         return;
     }
-    for (int d = 0; d < 3; d++) {
-        world = fabs(labels->to_voxel[flat][d]) > fabs(labels->to_voxel[flat][world]) ? d : world;
-    }
-    for (int e = 0; e < 3; e++) {
-        if (e != flat && fabs(image->to_world[world][e]) > 1e-3 * labels_voxel(labels)) {
-            tool_fail(tool, STATUS_INPUT, "the slice is oblique to the world's axes: resample it first");
-        }
+    int world = image_axis_across(image, flat);
+    if (world < 0) {
+        tool_fail(tool, STATUS_INPUT, "the slice is oblique to the world's axes: resample it first");
     }
     for (int d = 0; d < 3; d++) {
         if (d != world) {
@@ -239,7 +227,6 @@ static void set_space(const struct tool *tool, const struct image *image, struct
         labels->size[d] = (int64_t)image->size[d];
     }
     image_to_voxel(image, labels->to_voxel);
-    memcpy(result->to_world, image->to_world, sizeof result->to_world);
     labels->dim = 3;
     set_plane(tool, image, labels);
     result->voxel_volume = labels_voxel_volume(labels);

@@ -13,7 +13,6 @@
 struct label_image {
     struct labels labels;
     uint16_t *voxel;          /* the array of labels.label */
-    double to_world[3][4];    /* voxel index to world, m */
     struct label_table table; /* label l is table.names.name[l] */
     bool *keep;               /* labels.count: table.kept */
     double *volume;           /* labels.count: of its voxels, m3 (2D: m2) */

@@ -118,13 +118,12 @@ const char *image_text(const struct image *image, char text[128])
 
 static const double most_ratio = 100; /* body to image */
 
-/* The world axis to which voxel axes a and b are perpendicular; -1: none. */
-static int axis_across(const struct image *image, int a, int b)
+int image_axis_across(const struct image *image, int voxel)
 {
     for (int w = 0; w < 3; w++) {
         bool across = true;
-        for (int c = a; c <= b; c += b - a) {
-            across = across && fabs(image->to_world[w][c]) <= 1e-4 * image_step(image, c);
+        for (int c = 0; c < 3; c++) {
+            across = across && (c == voxel || fabs(image->to_world[w][c]) <= 1e-3 * image_step(image, c));
         }
         if (across) {
             return w;
@@ -156,7 +155,7 @@ void image_to_body(const struct tool *tool, struct image *image, int dim, struct
         return;
     }
     int flat = image->size[2] == 1 ? 2 : image->size[1] == 1 ? 1 : 0;
-    int a = flat == 0 ? 1 : 0, b = flat == 2 ? 1 : 2, across = axis_across(image, a, b);
+    int a = flat == 0 ? 1 : 0, b = flat == 2 ? 1 : 2, across = image_axis_across(image, flat);
     if (image->size[flat] > 1 || across < 0) {
         tool_fail(tool, STATUS_INPUT,
                   "the body is in 2D: it goes with an image of one slice across a world axis, not %s",

@@ -22,6 +22,9 @@ void tool_write_image(const struct tool *tool, const struct image *image);
 /* "181 x 217 x 181 voxels of 1 x 1 x 1 mm" into text[128]; returns it. */
 const char *image_text(const struct image *image, char text[128]);
 
+/* The world axis to which the slices along a voxel axis are perpendicular; -1: none. */
+int image_axis_across(const struct image *image, int voxel);
+
 /* The world axes and voxel axes in the order of the body's axes. */
 struct image_axes {
     int world[3], voxel[3];
