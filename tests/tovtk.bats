@@ -143,7 +143,7 @@ squeezed_cube() {
     sed 's/names=low,high/names=low/' groups > bad
     refused 2 "facets.set: row 1: no group 1 in names=" tovtk bad
     sed '/^# facets i4/{n;s/0 1/0 9/}' groups > bad
-    refused 2 "facets: row 0: no node 9" tovtk bad
+    refused 2 "facets: row 0: no row 9 of nodes.x" tovtk bad
 }
 
 @test "the ending of a name says what is written" {

@@ -131,23 +131,17 @@ static void print_elements(FILE *file, const struct group_kind kind[3])
     fprintf(file, "$EndElements\n");
 }
 
-static enum status write_msh(FILE *file, const struct body *body, double unit, struct error *error)
+static void write_msh(FILE *file, const struct body *body, double unit)
 {
     const struct cells *cells = &body->cells;
-    const struct neighbours *sets = &body->sets.lists;
+    const struct groups *sets = &body->sets;
     int dim = cells->dim;
-    int64_t nodes = cells->node_count, set_size = sets->count > 0 ? sets->ptr[sets->count] : 0;
-    NEW_SCRATCH(int32_t, set, set_size, error);
-    for (int32_t g = 0; g < sets->count; g++) {
-        for (int64_t i = sets->ptr[g]; i < sets->ptr[g + 1]; i++) {
-            set[i] = g;
-        }
-    }
+    int64_t nodes = cells->node_count;
     const struct group_kind kind[3] = {{dim, dim == 3 ? 4 : 2, dim + 1, cells->count, cells->node,
                                         body->regions.group, &body->regions.names},
                                        {dim - 1, dim == 3 ? 2 : 1, dim, body->facets.count, body->facets.node,
                                         body->facets.group, &body->facets.names},
-                                       {0, 15, 1, set_size, sets->idx, set, &body->sets.names}};
+                                       {0, 15, 1, sets->count, sets->node, sets->group, &sets->names}};
     fprintf(file, "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n");
     print_names(file, kind);
     print_entities(file, kind);
@@ -160,7 +154,6 @@ static enum status write_msh(FILE *file, const struct body *body, double unit, s
     }
     fprintf(file, "$EndNodes\n");
     print_elements(file, kind);
-    return STATUS_OK;
 }
 
 /* ---- decks of Abaqus and CalculiX ---- */
@@ -255,10 +248,12 @@ int main(int argc, char *argv[])
     TOOL_TRY(&tool, stream_facets(&stream, false, &body.facets, &error));
     TOOL_TRY(&tool, stream_sets(&stream, false, &body.sets, &error));
     tool_print_to(&tool, &output, tool.output);
-    TOOL_TRY(&tool, output_end(&output,
-                               is_msh ? write_msh(output.file, &body, unit, &error)
-                                      : write_inp(output.file, &body, unit, &error),
-                               &error));
+    if (is_msh) {
+        write_msh(output.file, &body, unit);
+        tool_printed(&tool, &output);
+    } else {
+        TOOL_TRY(&tool, output_end(&output, write_inp(output.file, &body, unit, &error), &error));
+    }
     groups_free(&body.regions);
     groups_free(&body.facets);
     groups_free(&body.sets);

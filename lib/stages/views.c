@@ -5,6 +5,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* ---- any section, by its entry in the table of sections ---- */
@@ -199,7 +200,17 @@ enum status stream_sets(const struct stream *stream, bool needed, struct groups 
     }
     RETURN_IF_ERROR(stream_view(stream, "sets.ptr", &ptr, error));
     RETURN_IF_ERROR(names_of(ptr, "names", &sets->names, error));
-    return stream_neighbours(stream, "sets", sets->names.count, &sets->lists, error);
+    RETURN_IF_ERROR(stream_neighbours(stream, "sets", sets->names.count, &sets->lists, error));
+    sets->count = sets->lists.ptr[sets->lists.count];
+    RETURN_IF_ERROR(NEW_ARRAY(&sets->owned, sets->count, error));
+    for (int32_t s = 0; s < sets->lists.count; s++) {
+        for (int64_t i = sets->lists.ptr[s]; i < sets->lists.ptr[s + 1]; i++) {
+            sets->owned[i] = s;
+        }
+    }
+    sets->node = sets->lists.idx;
+    sets->group = sets->owned;
+    return STATUS_OK;
 }
 
 /* The edges of faces, in 3D of smoothed cells only and in the order of their first use. */
@@ -331,4 +342,5 @@ const char *vector_attributes(int dim, const char *unit, char text[64])
 void groups_free(struct groups *groups)
 {
     names_free(&groups->names);
+    free(groups->owned);
 }

@@ -43,10 +43,11 @@ MUST_CHECK enum status names_of(const struct section *section, const char *key, 
  * also where reading them failed. Without groups all is 0, or it is an error if they are needed. */
 struct groups {
     struct names names;
-    int64_t count;           /* facets */
-    const int32_t *node;     /* count * dim: of the facets */
-    const int32_t *group;    /* of each cell or facet: below names.count */
+    int64_t count;        /* facets; sets: nodes of all of them */
+    const int32_t *node;  /* count * dim: of the facets; count: nodes of the sets, one set after the other */
+    const int32_t *group; /* of each cell, facet or node of a set: below names.count */
     struct neighbours lists; /* sets: an ascending list of nodes for each name */
+    int32_t *owned;          /* sets: the array of `group` */
 };
 MUST_CHECK enum status stream_regions(const struct stream *stream, bool needed, struct groups *regions,
                                       struct error *error);

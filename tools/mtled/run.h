@@ -142,12 +142,9 @@ void run_sliding_judge(const struct run *run);
 void run_dynamic(struct run *run);
 
 /* A frame_function; the context is the struct run: writes the sections u.frame.NUMBER and
- * parameters.frame.NUMBER. */
+ * parameters.frame.NUMBER; of a state of equilibrium, run->u, at which the system was evaluated last, all
+ * output of the scene: sections X.frame.NUMBER, and a row of reactions.frames and energy.frames. */
 void run_put_frame(void *context, int64_t number, double time, const double *u);
-
-/* The same for a state of equilibrium, run->u, at which the system was evaluated last, with all output of the
- * scene: sections X.frame.NUMBER, and a row of reactions.frames and energy.frames. */
-void run_put_equilibrium(void *context, int64_t number, double time, const double *u);
 
 /* ---- frames: written as they come ---- */
 

@@ -227,16 +227,13 @@ void run_checkpoint_stop(struct run *run, int64_t steps)
     int number = (int)ranks_most(process_ranks(), *checkpoint->interrupted);
     const char *name = sigabbrev_np(number);
     enum status status = (enum status)(128 + number);
-    if (checkpoint->file == NULL) {
-        run_fail(run, status, "ended by SIG%s after step %lld: to be able to go on, use -c", name,
-                 (long long)steps);
-    }
-    if (checkpoint->status != STATUS_OK) {
-        run_fail(run, status, "ended by SIG%s after step %lld: no checkpoint: %s", name, (long long)steps,
-                 checkpoint->error.text);
-    }
-    run_fail(run, status, "ended by SIG%s after step %lld: the same command goes on from %s", name,
-             (long long)steps, checkpoint->file);
+    const char *rest = checkpoint->file == NULL          ? "to be able to go on, use -c"
+                       : checkpoint->status != STATUS_OK ? "no checkpoint: "
+                                                         : "the same command goes on from ";
+    run_fail(run, status, "ended by SIG%s after step %lld: %s%s", name, (long long)steps, rest,
+             checkpoint->file == NULL          ? ""
+             : checkpoint->status != STATUS_OK ? checkpoint->error.text
+                                               : checkpoint->file);
 }
 
 void run_checkpoint_remove(struct run *run)

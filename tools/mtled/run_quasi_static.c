@@ -180,7 +180,7 @@ static void end_step(void *context, int64_t number, double time, const double *u
     body_accept(body);
     body_collect_history(body);
     if (scene->output.frames > 0 && ends_frame) {
-        run_put_equilibrium(run, (int64_t)frame, time, u);
+        run_put_frame(run, (int64_t)frame, time, u);
     }
     if (number < steps) {
         body_step(body, scene->duration / (double)steps);
@@ -219,7 +219,7 @@ void run_quasi_static(struct run *run)
                                                            : run->scene->output.frames,
                                       .in_time = in_time,
                                       .hold = chosen ? begin_step : NULL,
-                                      .frame = in_steps || in_time ? end_step : run_put_equilibrium,
+                                      .frame = in_steps || in_time ? end_step : run_put_frame,
                                       .progress = run_progress,
                                       .context = run,
                                       .restored = run_checkpoint_state(run)};

@@ -52,14 +52,6 @@ void run_put_supports(const struct run *run)
     }
 }
 
-void run_put_frame(void *context, int64_t number, double time, const double *u)
-{
-    struct run *run = context;
-    run_put_field(run, &(struct instant){number, time}, u);
-    run_folds_check(run, u, time, true);
-    run_frames_write(run, number);
-}
-
 bool run_is_of_frames(const char *name)
 {
     size_t length;
@@ -265,17 +257,20 @@ static void put_state(struct run *run, const struct instant *instant)
     }
 }
 
-void run_put_equilibrium(void *context, int64_t number, double time, const double *u)
+void run_put_frame(void *context, int64_t number, double time, const double *u)
 {
     struct run *run = context;
     const double duration = run->scene->duration;
     const struct instant now = {number, duration > 0.0 ? time * duration : time};
     run_put_field(run, &now, u);
     run_folds_check(run, u, time, true);
-    run_stability_check(run, time);
-    run_stability_elliptic(run, time, false);
-    run_contacts_penetrate(run, field_largest(run->model->system.node_count, run->scene->dim, u), 0.0, false);
-    put_state(run, &now);
+    if (run->scene->analysis == SCENE_QUASI_STATIC) {
+        run_stability_check(run, time);
+        run_stability_elliptic(run, time, false);
+        run_contacts_penetrate(run, field_largest(run->model->system.node_count, run->scene->dim, u), 0.0,
+                               false);
+        put_state(run, &now);
+    }
     run_frames_write(run, number);
 }
 

@@ -10,6 +10,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* Names of the sections of groups begin so; "label=facets.NAME" or "label=set.NAME" are their attributes. */
@@ -31,22 +32,14 @@ static void read_tensor(const struct section *section, const int64_t from[6], in
     }
 }
 
-static void sort_descending(double values[3])
-{
-    for (int i = 1; i < 3; i++) {
-        for (int k = i; k > 0 && values[k] > values[k - 1]; k--) {
-            double swapped = values[k];
-            values[k] = values[k - 1];
-            values[k - 1] = swapped;
-        }
-    }
-}
-
 static void principal_values(const double A[9], double *row)
 {
-    double V[9];
-    eigen_symmetric(3, A, row, V);
-    sort_descending(row);
+    double V[9], values[3];
+    eigen_symmetric(3, A, values, V);
+    qsort(values, 3, sizeof *values, compare_double);
+    for (int i = 0; i < 3; i++) {
+        row[i] = values[2 - i];
+    }
 }
 
 static void von_mises(const double A[9], double *row)
@@ -124,21 +117,21 @@ static enum status add_invariants(struct stream *stream, int64_t frame, struct e
     return STATUS_OK;
 }
 
-/* Put a section for each name: 1 at the nodes node[i * per] and following of the items i of its group, 0
- * elsewhere. */
-static enum status add_groups(struct stream *stream, const char *prefix, const struct names *names,
-                              int64_t node_count, int64_t count, int per, const int32_t *node,
-                              const int32_t *group, struct error *error)
+/* Put a section for each name: 1 at the nodes of its facets or set, which have so many `nodes` each, 0
+ * elsewhere.
+ */
+static enum status add_groups(struct stream *stream, const char *prefix, const struct groups *groups,
+                              int64_t node_count, int nodes, struct error *error)
 {
-    for (int64_t g = 0; g < names->count; g++) {
+    for (int64_t g = 0; g < groups->names.count; g++) {
         char name[64];
         SCRATCH char *label = NULL;
         NEW_SCRATCH(int32_t, value, node_count, error);
-        for (int64_t i = 0; i < count * per; i++) {
-            value[node[i]] |= group[i / per] == g;
+        for (int64_t i = 0; i < groups->count * nodes; i++) {
+            value[groups->node[i]] |= groups->group[i / nodes] == g;
         }
         snprintf(name, sizeof name, DERIVED_GROUP "%s%jd", prefix, g);
-        if (asprintf(&label, "label=%s.%s", prefix, names->name[g]) < 0) {
+        if (asprintf(&label, "label=%s.%s", prefix, groups->names.name[g]) < 0) {
             label = NULL;
             return fail_memory(error, "labels");
         }
@@ -163,21 +156,11 @@ static enum status derived_add(struct stream *stream, const struct cells *cells,
                                struct error *error)
 {
     FREED_BY(groups_free) struct groups facets = {0}, sets = {0};
-    const struct neighbours *lists = &sets.lists;
     RETURN_IF_ERROR(add_invariants(stream, frame, error));
     RETURN_IF_ERROR(stream_facets(stream, false, &facets, error));
-    RETURN_IF_ERROR(add_groups(stream, "facets", &facets.names, cells->node_count, facets.count, cells->dim,
-                               facets.node, facets.group, error));
+    RETURN_IF_ERROR(add_groups(stream, "facets", &facets, cells->node_count, cells->dim, error));
     RETURN_IF_ERROR(stream_sets(stream, false, &sets, error));
-    int64_t count = lists->count > 0 ? lists->ptr[lists->count] : 0;
-    NEW_SCRATCH(int32_t, group, count, error);
-    for (int64_t i = 0, s = 0; i < count; i++) {
-        while (i >= lists->ptr[s + 1]) {
-            s++;
-        }
-        group[i] = (int32_t)s;
-    }
-    return add_groups(stream, "set", &sets.names, cells->node_count, count, 1, lists->idx, group, error);
+    return add_groups(stream, "set", &sets, cells->node_count, 1, error);
 }
 
 /* ---- the plot ---- */

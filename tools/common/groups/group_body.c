@@ -64,14 +64,7 @@ static enum status read_sets(const struct stream *stream, struct group_body *bod
     RETURN_IF_ERROR(stream_sets(stream, false, &sets, error));
     list->names = sets.names;
     sets.names = (struct names){0};
-    int64_t count = list->names.count > 0 ? sets.lists.ptr[list->names.count] : 0;
-    NEW_SCRATCH(int32_t, group, count, error);
-    for (int32_t g = 0; g < list->names.count; g++) {
-        for (int64_t i = sets.lists.ptr[g]; i < sets.lists.ptr[g + 1]; i++) {
-            group[i] = g;
-        }
-    }
-    return set_members(list, count, group, sets.lists.idx, error);
+    return set_members(list, sets.count, sets.group, sets.node, error);
 }
 
 static enum status read_regions(const struct stream *stream, struct group_body *body, struct error *error)
