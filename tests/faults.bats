@@ -82,9 +82,9 @@ limit_memory() { [[ $BUILD == *san* ]] || echo 'ulimit -v 4000000;'; }
     mesh | sed 's/^2$/3/; s/^2 4 "body"/2 4 "body"\n2 5 "void"/' > void.msh
     refused "region empty" 2 "there are body" 'nodes -u mm -r void void.msh'
     with 's/ymax/ymx/'
-    refused "facets of a scene misspelt" 2 "no facet group 'ymx'; present: xmin,xmax,ymin,ymax" 'mtled edited.scene table.mts'
+    refused "facets of a scene misspelt" 2 "no facet group 'ymx'; there are: xmin,xmax,ymin,ymax" 'mtled edited.scene table.mts'
     with 's/region = body/region = bdoy/'
-    refused "region of a scene misspelt" 2 "no region 'bdoy'; present: body" 'mtled edited.scene table.mts'
+    refused "region of a scene misspelt" 2 "no region 'bdoy'; there are: body" 'mtled edited.scene table.mts'
     with 's/facets = ymax/nodes = corner/'
     refused "node set absent" 2 "no node sets: run tag -n" 'mtled edited.scene table.mts'
 }
