@@ -168,8 +168,8 @@ finds() {
     [ ${#lines[@]} -eq 1 ]
     sed 's/^4 6 7$/5 7 6/; s/^5.0001 0.5/6 1/' poor.mts > good.mts
     run -0 mts check good.mts
-    [[ "${lines[0]}" == "cells: row 1: poor: quality "*" at 0.5 -6.667e-06 m" ]]
-    [[ "${lines[1]}" == "cells: row 0: poor: quality "*" at 0.5 3.333e-05 m" ]]
+    [[ "${lines[0]}" == "cells: row 1: poor: quality "*" at (0.5, -6.66667e-06) m" ]]
+    [[ "${lines[1]}" == "cells: row 0: poor: quality "*" at (0.5, 3.33333e-05) m" ]]
     [ "${lines[2]}" = "cells: 2 connected bodies" ]
     [ ${#lines[@]} -eq 3 ]
     sed 's/^5 7 6$/0 1 6/' good.mts > three.mts

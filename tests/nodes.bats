@@ -128,7 +128,7 @@ volumes() {
     nodes -u m -v square.msh 2> said > /dev/null
     grep -q "nodes: 4 nodes, 2 cells, box 0 0 to 1 1 m, area 1 m2, 1 connected body" said
     grep -q "nodes: quality of the cells: least 0.83, median 0.83" said
-    grep -q "nodes: cell 0: quality 0.83 at 0.6667 0.3333 m" said
+    grep -q "nodes: cell 0: quality 0.83 at (0.666667, 0.333333) m" said
 }
 
 @test "a plate of one cell is reported, one of three cells and a cube are not" {

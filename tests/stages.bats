@@ -21,9 +21,9 @@ setup() {
         [[ "$stderr" != *"standard input"* ]]
     done
     refused 2 "no rule of 5 points; there are 1, 3, 4" ipoints -g 5 square.mts
-    refused 2 "--lattice: 3 numbers of points, not 1 or 2" ipoints --lattice 3,3,3 square.mts
+    refused 2 "--lattice: 3 numbers, not 1 or 2" ipoints --lattice 3,3,3 square.mts
     refused 2 "--lattice: more than 2147483647 points" ipoints --lattice 50000 square.mts
-    refused 2 "--lattice: 2 numbers of points, not 1 or 3" ipoints --lattice 3,3 <(cloud -d 3 -k regular -n 3 --box 0,1,0,1,0,1)
+    refused 2 "--lattice: 2 numbers, not 1 or 3" ipoints --lattice 3,3 <(cloud -d 3 -k regular -n 3 --box 0,1,0,1,0,1)
     refused 2 "--mu: 2 values; give one, or in 2D 3, in 3D 6" shapefn --mu 1,2
     refused 2 "-R: 'mm' is not a length" support -R mm
     refused 2 "--mu: 6 values; in 2D" shapefn --mu 1,2,3,4,5,6 square.mts # six in 2D

@@ -293,7 +293,7 @@ image.header.set_xyzt_units("mm")
 nib.save(image, "furrow.nii")
 END
     voxels -h 4mm --surface label_1 --gap 6mm furrow.nii > gap.tsv 2> said
-    grep -qE "^voxels: --gap: [0-9]+ nodes are moved by less, the first at \([0-9., ]+\) mm: " said
+    grep -qE "^voxels: --gap: [0-9]+ nodes are moved by less, the first at \([-0-9., ]+\) m: " said
     voxels -h 4mm furrow.nii | tag -f held=low:z,20% > body.mts 2> said
     shapefn body.mts 2> said.shapefn | mtled slide.scene > u.dat
 }

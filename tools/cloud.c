@@ -67,15 +67,6 @@ static void parse_box(const struct tool *tool, const char *text, struct cloud_op
     }
 }
 
-static void parse_count(const struct tool *tool, struct cloud_options *cloud)
-{
-    int count = tool_whole_numbers(tool, "count", 1, INT32_MAX, cloud->count);
-    if (count != 1 && (count != cloud->dim || cloud->kind == CLOUD_HALTON)) {
-        tool_fail(tool, STATUS_INPUT, "-n: %d numbers, not 1%s", count,
-                  cloud->kind == CLOUD_HALTON ? "" : " or one for each axis");
-    }
-}
-
 static struct cloud_options parse(const struct tool *tool)
 {
     static const char *const kinds[] = {"regular", "jittered", "halton", "graded"};
@@ -88,7 +79,7 @@ static struct cloud_options parse(const struct tool *tool)
     }
     cloud.dim = (int)tool_integer(tool, "dim", 2, 3, 2);
     cloud.kind = (enum cloud_kind)tool_choice(tool, "kind", kinds, 4, 0);
-    parse_count(tool, &cloud);
+    tool_whole_numbers(tool, "count", 1, INT32_MAX, cloud.kind == CLOUD_HALTON ? 1 : cloud.dim, cloud.count);
     parse_box(tool, tool_value(tool, "box"), &cloud);
     check_kind(tool, "jitter", cloud.kind == CLOUD_JITTERED);
     check_kind(tool, "ratio", cloud.kind == CLOUD_GRADED);

@@ -309,16 +309,6 @@ static void find_points(const struct tool *tool, struct stream *stream, int dim,
                               &error));
 }
 
-/* Begin the output stream with the provenance of the input and the points; it takes points->x. */
-static void begin_output(const struct tool *tool, struct stream *stream, int dim, const struct points *points,
-                         struct stream *output)
-{
-    char attributes[64];
-    stream_inherit(output, stream);
-    tool_put(tool, output, "nodes.x", TYPE_F8, points->count, dim, vector_attributes(dim, "m", attributes),
-             points->x);
-}
-
 /* Write the moved points, with the names that they have in their file. */
 static void write_landmarks(const struct tool *tool, int dim, const struct points *points,
                             const double *moved)
@@ -340,12 +330,16 @@ int main(int argc, char *argv[])
     int dim;
     int64_t node_count;
     const double *nodes;
+    char attributes[64];
     tool_begin(&tool, usage, 0, 1, argc, argv);
     (void)parse(&tool, 0); /* usage errors before waiting for the input */
     tool_read(&tool, tool.operands[0], &stream);
     TOOL_TRY(&tool, stream_nodes(&stream, &dim, &node_count, &nodes, &error));
     find_points(&tool, &stream, dim, &points);
-    begin_output(&tool, &stream, dim, &points, &output);
+    output.provenance = stream.provenance;
+    stream.provenance = (struct names){0};
+    tool_put(&tool, &output, "nodes.x", TYPE_F8, points.count, dim, vector_attributes(dim, "m", attributes),
+             points.x);
     if (tool_given(&tool, "field")) {
         put_fields(&tool, &stream, node_count, tool_value(&tool, "field"), &points, &output);
     } else {

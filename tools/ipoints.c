@@ -82,8 +82,7 @@ static struct ipoints_options parse(const struct tool *tool, const struct mls *m
     } else if (gauss) {
         ipoints.gauss_points = (int)tool_integer(tool, "gauss", 1, 1000, 1);
     } else if (tool_given(tool, "lattice")) {
-        int count = tool_whole_numbers(tool, "lattice", 2, 1e6, ipoints.lattice);
-        memset(ipoints.lattice + count, 0, (size_t)(3 - count) * sizeof *ipoints.lattice);
+        tool_whole_numbers(tool, "lattice", 2, 1e6, mls->dim, ipoints.lattice);
     }
     return ipoints;
 }

@@ -1,5 +1,6 @@
 #include "base/status.h"
 
+#include <errno.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
@@ -70,4 +71,9 @@ bool text_ends(const char *text, const char *ending)
 enum status fail_memory(struct error *error, const char *what)
 {
     return fail(error, STATUS_SYSTEM, "%s: out of memory", what + (what[0] == '&'));
+}
+
+enum status fail_system(struct error *error, const char *name)
+{
+    return fail(error, STATUS_SYSTEM, "%s: %s", name, strerror(errno));
 }

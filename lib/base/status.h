@@ -61,5 +61,8 @@ void text_append(char *text, size_t size, const char *format, ...) __attribute__
 /* Whether a text, such as the name of a file, ends in `ending`. */
 bool text_ends(const char *text, const char *ending);
 
+/* fail() with STATUS_SYSTEM and "NAME: " with the cause that errno has. */
+enum status fail_system(struct error *error, const char *name);
+
 /* fail() with the out-of-memory message for `what`. */
 enum status fail_memory(struct error *error, const char *what);

@@ -38,35 +38,20 @@ static enum status cell_points(const struct cells *cells, int per_cell, struct a
     return STATUS_OK;
 }
 
-/* n[dim]: points along each axis, from one number for all axes or one for each; *count receives their
- * product. */
-static enum status count_lattice(const int64_t wanted[3], int dim, int64_t n[3], int64_t *count,
-                                 struct error *error)
-{
-    int given = 1 + (wanted[1] > 0) + (wanted[2] > 0);
-    if (given != 1 && given != dim) {
-        return fail(error, STATUS_INPUT, "--lattice: %d numbers of points, not 1 or %d", given, dim);
-    }
-    *count = 1;
-    for (int a = 0; a < dim; a++) {
-        n[a] = wanted[given == 1 ? 0 : a];
-        if (__builtin_mul_overflow(*count, n[a], count) || *count > INT32_MAX) {
-            return fail(error, STATUS_INPUT, "--lattice: more than %d points", INT32_MAX);
-        }
-    }
-    return STATUS_OK;
-}
-
 /* A lattice of points, at least 2 along each axis, over the box of the nodes, x fastest; weights of the
  * trapezium rule. */
-static enum status lattice_points(const struct cells *nodes, const int64_t wanted[3],
+static enum status lattice_points(const struct cells *nodes, const int64_t n[3],
                                   struct adaptive_points *points, struct error *error)
 {
     int dim = nodes->dim;
-    int64_t count = 0, n[3];
+    int64_t count = 1;
     double step[3];
     struct box box = box_of(dim, nodes->node_count, nodes->x);
-    RETURN_IF_ERROR(count_lattice(wanted, dim, n, &count, error));
+    for (int a = 0; a < dim; a++) {
+        if (__builtin_mul_overflow(count, n[a], &count) || count > INT32_MAX) {
+            return fail(error, STATUS_INPUT, "--lattice: more than %d points", INT32_MAX);
+        }
+    }
     RETURN_IF_ERROR(new_points(count, dim, points, error));
     for (int a = 0; a < dim; a++) {
         step[a] = (box.high[a] - box.low[a]) / (double)(n[a] - 1);

@@ -16,8 +16,7 @@ struct ipoints_options {
     struct adaptive_options refinement;
     bool given_radius;  /* use the radius or factor of refinement.support; else the stream's radii, if any */
     int64_t lattice[3]; /* else, if lattice[0] > 0: a regular lattice of evaluation points over the box of the
-                           nodes, with this number along each axis; with zeros behind the first number, along
-                           all axes */
+                           nodes, with this number along each axis */
 };
 
 /* Add the sections of ipoints: points.*, faces, faces.cell, facepoints.x (lib/README.md). *unresolved counts

@@ -327,12 +327,6 @@ enum status stream_put_copy(struct stream *stream, const char *name, enum elemen
     return stream_put(stream, name, type, rows, cols, attributes, copy, true, error);
 }
 
-void stream_inherit(struct stream *stream, struct stream *from)
-{
-    stream->provenance = from->provenance;
-    from->provenance = (struct names){0};
-}
-
 const char *vector_attributes(int dim, const char *unit, char text[64])
 {
     snprintf(text, 64, "unit=%s cols=%s", unit, dim == 2 ? "x,y" : "x,y,z");

@@ -77,9 +77,6 @@ MUST_CHECK enum status stream_put_copy(struct stream *stream, const char *name, 
                                        int64_t rows, int64_t cols, const char *attributes, const void *data,
                                        struct error *error);
 
-/* Move the provenance of `from` to a stream that is made from it. */
-void stream_inherit(struct stream *stream, struct stream *from);
-
 /* text[64] = the attributes of a section with a vector in each row, "unit=UNIT cols=x,y[,z]". Returns
  * text. */
 const char *vector_attributes(int dim, const char *unit, char text[64]);

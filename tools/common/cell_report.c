@@ -33,11 +33,7 @@ const char *cell_report_describe(const struct cells *cells, const struct poor_ce
 {
     double centre[3];
     cell_centroid(cells, poor->cell, centre);
-    snprintf(text, 128, "quality %.2g at", poor->quality);
-    for (int k = 0; k < cells->dim; k++) {
-        text_append(text, 128, " %.4g", centre[k]);
-    }
-    text_append(text, 128, " m");
+    snprintf(text, 128, "quality %.2g at %s m", poor->quality, POINT_TEXT(cells->dim, centre));
     return text;
 }
 

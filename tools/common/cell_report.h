@@ -26,7 +26,7 @@ struct cell_report {
 MUST_CHECK enum status cell_report_make(const struct cells *cells, double bound, struct cell_report *report,
                                         struct error *error);
 
-/* "quality 3.1e-05 at 0.01 0.02 0.03 m" of a poor cell. */
+/* "quality 3.1e-05 at (0.01, 0.02, 0.03) m" of a poor cell. */
 const char *cell_report_describe(const struct cells *cells, const struct poor_cell *poor, char text[128]);
 
 /* Tell nodes that hang on facets of other cells (hanging.h) into said[512]: "nodes on ...", or "". *parts:

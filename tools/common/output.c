@@ -61,11 +61,6 @@ static char *temporary_name(const char *target, bool grows)
     return length < 0 ? NULL : name;
 }
 
-static enum status fail_output(const struct output *output, struct error *error)
-{
-    return fail(error, STATUS_SYSTEM, "%s: %s", output->name, strerror(errno));
-}
-
 /* Open a file of a new name, which is removed if the program ends before it is complete. */
 static int open_new(struct output *output)
 {
@@ -92,7 +87,7 @@ static enum status open_temporary(struct output *output, bool grows, const struc
               : open_new(output);
     return output->descriptor >= 0 && fchmod(output->descriptor, file_mode(present)) == 0
                ? STATUS_OK
-               : fail_output(output, error);
+               : fail_system(error, output->name);
 }
 
 /* Close and remove the temporary file; the former file stays unchanged. */
@@ -121,12 +116,12 @@ static enum status open_named(struct output *output, bool grows, struct error *e
     } else {
         output->target = exists ? realpath(name, NULL) : strdup(name);
         if (output->target == NULL) {
-            return fail_output(output, error);
+            return fail_system(error, output->name);
         }
         RETURN_IF_ERROR(open_temporary(output, grows, exists ? &present : NULL, error));
     }
     output->file = output->descriptor >= 0 ? fdopen(output->descriptor, "w") : NULL;
-    return output->file != NULL ? STATUS_OK : fail_output(output, error);
+    return output->file != NULL ? STATUS_OK : fail_system(error, output->name);
 }
 
 enum status output_open(struct output *output, const char *name, bool grows, struct error *error)
@@ -170,10 +165,10 @@ enum status output_end(struct output *output, enum status status, struct error *
     }
     /* Some file systems report only now that there is no space. */
     if (output->temporary != NULL && fsync(output->descriptor) != 0) {
-        status = fail_output(output, error);
+        status = fail_system(error, output->name);
     }
     if (fclose(output->file) != 0 && status == STATUS_OK) {
-        status = fail_output(output, error);
+        status = fail_system(error, output->name);
     }
     output->file = NULL;
     output->descriptor = -1;
@@ -181,7 +176,7 @@ enum status output_end(struct output *output, enum status status, struct error *
         if (rename(output->temporary, output->target) == 0) {
             pending = NULL;
         } else {
-            status = fail_output(output, error);
+            status = fail_system(error, output->name);
         }
     }
     abandon(output);

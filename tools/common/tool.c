@@ -242,7 +242,7 @@ void tool_put(const struct tool *tool, struct stream *stream, const char *name, 
 enum status tool_close_stdout(struct error *error)
 {
     stdout_closed = close(STDOUT_FILENO) == 0;
-    return stdout_closed ? STATUS_OK : fail(error, STATUS_SYSTEM, "standard output: %s", strerror(errno));
+    return stdout_closed ? STATUS_OK : fail_system(error, "standard output");
 }
 
 void tool_write(const struct tool *tool, struct stream *stream)
@@ -335,8 +335,8 @@ int tool_choice(const struct tool *tool, const char *option, const char *const c
     return choice;
 }
 
-int tool_whole_numbers(const struct tool *tool, const char *option, double least, double most,
-                       int64_t numbers[3])
+void tool_whole_numbers(const struct tool *tool, const char *option, double least, double most, int dim,
+                        int64_t numbers[3])
 {
     double values[3];
     int count = 1;
@@ -344,6 +344,10 @@ int tool_whole_numbers(const struct tool *tool, const char *option, double least
     const struct option *found = options_find(&tool->options, option);
     TOOL_TRY(tool, parse_double_list(found->value, option_text(found, what), least, most, 3, values, &count,
                                      &error));
+    if (count != 1 && dim > 0 && count != dim) {
+        tool_fail(tool, STATUS_INPUT, dim == 1 ? "%s: %d numbers, not 1" : "%s: %d numbers, not 1 or %d",
+                  what, count, dim);
+    }
     for (int a = 0; a < 3; a++) {
         double value = values[a < count ? a : 0];
         numbers[a] = (int64_t)value;
@@ -351,7 +355,6 @@ int tool_whole_numbers(const struct tool *tool, const char *option, double least
             tool_fail(tool, STATUS_INPUT, "%s: %g is not a whole number", what, value);
         }
     }
-    return count;
 }
 
 const char *tool_first_given(const struct tool *tool, const char *const options[])

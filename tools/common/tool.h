@@ -38,10 +38,10 @@ double tool_length_unit(const struct tool *tool, const char *option, double othe
 int tool_choice(const struct tool *tool, const char *option, const char *const choices[], int count,
                 int otherwise);
 
-/* The one to three whole numbers of an option, or the only one three times; returns how many there are. Exits
- * if one is not whole, or not within [least, most]. */
-int tool_whole_numbers(const struct tool *tool, const char *option, double least, double most,
-                       int64_t numbers[3]);
+/* The whole numbers of an option for each of dim axes, or the only one for all. Exits if there are as many of
+ * neither, unless dim is 0: not known yet; and if one is not whole, or not within [least, most]. */
+void tool_whole_numbers(const struct tool *tool, const char *option, double least, double most, int dim,
+                        int64_t numbers[3]);
 
 /* The name of the first option given among a list that ends with NULL; NULL: none was. */
 const char *tool_first_given(const struct tool *tool, const char *const options[]);

@@ -15,15 +15,6 @@ struct point_section {
     struct table *table;
 };
 
-/* "FILE:LINE: [displacement NAME]: points TABLE:LINE: ..." */
-static enum status fail_at(const struct point_section *p, int64_t row, struct error *error, const char *what)
-{
-    const struct measured *measured = &p->condition->measured;
-    return fail(error, STATUS_INPUT, "%s: points %s:%lld: at %s: %s", p->section->label.where,
-                p->section->condition.table, (long long)p->table->line[row],
-                POINT_TEXT(measured->dim, measured->x + row * measured->dim), what);
-}
-
 /* "FILE:LINE: [displacement NAME]: moved TABLE: ..." */
 static enum status fail_moved(const struct point_section *p, struct error *error, const char *what)
 {
@@ -95,6 +86,7 @@ static enum status read_section(struct point_section *p, struct error *error)
     RETURN_IF_ERROR(MODEL_ARRAY(p->model, &values, rows * (2 * dim + 1), error));
     double *x = values, *u = x + rows * dim, *deviation = u + rows * dim;
     p->condition->measured = (struct measured){dim, rows, x, u, deviation};
+    p->condition->line = p->table->line;
     for (int64_t i = 0; i < rows; i++) {
         const double *row = p->table->values + i * cols;
         int open = 0;
@@ -105,11 +97,12 @@ static enum status read_section(struct point_section *p, struct error *error)
         }
         deviation[i] = cols > 2 * dim ? row[2 * dim] : 0.0;
         if (open == dim) {
-            return fail_at(p, i, error, "no component is given: leave the row out");
+            return condition_fail_at(p->condition, i, error, "no component is given: leave the row out");
         }
         if (deviation[i] < 0.0) {
-            return fail_at(p, i, error,
-                           "its standard deviation is negative: give a length, 0 for an exact point");
+            return condition_fail_at(
+                p->condition, i, error,
+                "its standard deviation is negative: give a length, 0 for an exact point");
         }
     }
     return STATUS_OK;
@@ -144,10 +137,11 @@ static enum status find_field(struct point_section *p, struct error *error)
     RETURN_IF_ERROR(field_outside(cells, reach, FIELD_MARGIN, measured->count, measured->x, outside, error));
     for (int64_t i = 0; i < measured->count; i++) {
         if (outside[i]) {
-            return fail_at(p, i, error,
-                           given > 0.0 ? "farther from the body than its reach: wrong unit or wrong place?"
-                                       : "farther from the body than the spacing of its nodes: wrong unit or "
-                                         "wrong place?");
+            return condition_fail_at(
+                p->condition, i, error,
+                given > 0.0 ? "farther from the body than its reach: wrong unit or wrong place?"
+                            : "farther from the body than the spacing of its nodes: wrong unit or "
+                              "wrong place?");
         }
     }
     RETURN_IF_ERROR(stage_recorded(p->model->stream, "support", &recorded, error));
@@ -167,6 +161,5 @@ enum status model_points(struct model *model, const struct scene_displacement *s
     struct point_section p = {model, section, condition, &table};
     RETURN_IF_ERROR(read_section(&p, error));
     RETURN_IF_ERROR(find_field(&p, error));
-    condition->line = table.line;
     return model_own(model, array_take(&table.line), error);
 }

@@ -6,7 +6,6 @@
 
 #include "io/stream/sections.h"
 
-#include <errno.h>
 #include <fcntl.h>
 #include <math.h>
 #include <signal.h>
@@ -53,11 +52,6 @@ void run_frames_check(const struct run *run)
     }
 }
 
-static enum status fail_file(const char *name, struct error *error)
-{
-    return fail(error, STATUS_SYSTEM, "%s: %s", name, strerror(errno));
-}
-
 /* Write the sections from the first one on that is not yet written; with `whole` those of frames, too. */
 static enum status put_sections(struct run *run, bool whole, struct error *error)
 {
@@ -93,11 +87,11 @@ static enum status open_kept(struct run *run, struct error *error)
     }
     int descriptor = open(frames->kept_file, O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666);
     if (descriptor < 0 || ftruncate(descriptor, bytes) != 0) {
-        return fail_file(frames->kept_file, error);
+        return fail_system(error, frames->kept_file);
     }
     FILE *file = fdopen(descriptor, "r+");
     if (file == NULL) {
-        return fail_file(frames->kept_file, error);
+        return fail_system(error, frames->kept_file);
     }
     stream_writer_begin(&frames->kept, file, false, bytes == 0 ? &empty : NULL);
     frames->kept.offset += bytes;
@@ -121,7 +115,7 @@ static enum status copy_kept(struct run *run, struct error *error)
     for (int64_t i = 0; i < stream.section_count; i++) {
         RETURN_IF_ERROR(stream_writer_put(&frames->writer, &stream, i, error));
     }
-    return lseek(fileno(frames->kept.file), 0, SEEK_END) < 0 ? fail_file(frames->kept_file, error)
+    return lseek(fileno(frames->kept.file), 0, SEEK_END) < 0 ? fail_system(error, frames->kept_file)
                                                              : STATUS_OK;
 }
 
@@ -206,7 +200,7 @@ enum status run_frames_sync(const struct run *run, struct error *error)
 {
     const struct run_frames *frames = &run->frames;
     bool failed = frames->kept_file != NULL && fsync(fileno(frames->kept.file)) != 0;
-    return failed ? fail_file(frames->kept_file, error) : STATUS_OK;
+    return failed ? fail_system(error, frames->kept_file) : STATUS_OK;
 }
 
 void run_frames_end(struct run *run)

@@ -3,6 +3,7 @@
 #include "output.h"
 
 #include "approx/cells/crossing.h"
+#include "approx/support/support.h"
 #include "base/vector.h"
 
 #include <math.h>
@@ -122,14 +123,10 @@ static void uncross(const struct tool *tool, const struct surface *surface, doub
         first = first < 0 && halvings[n] > 0 ? n : first;
     }
     if (nodes > 0) {
-        char text[96] = "";
-        for (int d = 0; d < dim; d++) {
-            text_append(text, sizeof text, "%s%.4g", d > 0 ? ", " : "", 1e3 * surface->x[first * dim + d]);
-        }
         tool_note(tool,
-                  "--gap: %jd nodes are moved by less, the first at (%s) mm: the surface would cross itself "
+                  "--gap: %jd nodes are moved by less, the first at %s m: the surface would cross itself "
                   "there, as where a furrow is narrower than twice the gap",
-                  nodes, text);
+                  nodes, POINT_TEXT(dim, surface->x + first * dim));
     }
 }
 

@@ -25,8 +25,7 @@ static enum status add_file(const char *file, uLong *crc, struct error *error)
     while (descriptor >= 0 && (count = read(descriptor, block, BLOCK)) > 0) {
         *crc = crc32_z(*crc, block, (size_t)count);
     }
-    return descriptor < 0 || count < 0 ? fail(error, STATUS_SYSTEM, "%s: %s", file, strerror(errno))
-                                       : STATUS_OK;
+    return descriptor < 0 || count < 0 ? fail_system(error, file) : STATUS_OK;
 }
 
 static uLong add_section(uLong crc, const struct section *section)
@@ -173,11 +172,6 @@ static enum status check_identity(const struct stream *stream, const char *name,
     return STATUS_OK;
 }
 
-static enum status fail_file(const char *file, struct error *error)
-{
-    return fail(error, STATUS_SYSTEM, "%s: %s", file, strerror(errno));
-}
-
 /* A device, folder or link must not be replaced. */
 static enum status check_regular(const char *file, struct error *error)
 {
@@ -198,7 +192,7 @@ enum status checkpoint_remove(const char *file, struct error *error)
             return fail_memory(error, file);
         }
         if (unlink(name) != 0 && errno != ENOENT) {
-            return fail_file(name, error);
+            return fail_system(error, name);
         }
     }
     return STATUS_OK;
@@ -212,7 +206,7 @@ enum status checkpoint_read(const char *file, const struct checkpoint_identity *
     FREED_BY(descriptor_close) int descriptor = open(file, O_RDONLY | O_CLOEXEC);
     *exists = descriptor >= 0 || errno != ENOENT;
     if (descriptor < 0) {
-        return *exists ? fail_file(file, error) : STATUS_OK;
+        return *exists ? fail_system(error, file) : STATUS_OK;
     }
     enum status status = stream_read(stream, descriptor, file, error);
     if (status == STATUS_INPUT) {

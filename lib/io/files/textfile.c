@@ -98,7 +98,7 @@ enum status bytefile_read(const char *path, size_t most, struct textfile *file, 
     RETURN_IF_ERROR(check_kind(path, error));
     FREED_BY(descriptor_close) int descriptor = open(path, O_RDONLY | O_CLOEXEC | O_NOCTTY);
     if (descriptor < 0) {
-        return fail(error, STATUS_SYSTEM, "%s: %s", path, strerror(errno));
+        return fail_system(error, path);
     }
     RETURN_IF_ERROR(fail_in(
         error, descriptor_read_all(descriptor, most, NULL, &file->text, &file->size, error), "%s", path));

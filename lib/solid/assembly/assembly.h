@@ -133,6 +133,10 @@ MUST_CHECK enum status assembly_add_contacts(const struct assembly *input, struc
 MUST_CHECK enum status assembly_add_supports(const struct assembly *input, struct solid_system *system,
                                              struct error *error);
 
+/* fail() at a row of measured points: "FILE:LINE: [displacement NAME]: points TABLE:LINE: at PLACE: what". */
+enum status condition_fail_at(const struct condition *condition, int64_t row, struct error *error,
+                              const char *what);
+
 /* (*part)[cells.count], to be freed: of cells that have a node on a junction of prescribed and free boundary
  * within a smooth side the number of one of these nodes; -1: of others. */
 MUST_CHECK enum status assembly_junction_cells(const struct assembly *input, int32_t **part,

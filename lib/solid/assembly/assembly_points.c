@@ -21,14 +21,13 @@ struct point_condition {
     double energy;          /* e of measured.h, J (2D: J/m) */
 };
 
-/* "FILE:LINE: [displacement NAME]: points TABLE:LINE: ..." */
-static enum status fail_at(const struct point_condition *p, int64_t row, struct error *error,
-                           const char *what)
+enum status condition_fail_at(const struct condition *condition, int64_t row, struct error *error,
+                              const char *what)
 {
-    char place[96];
-    point_text(p->measured->dim, p->measured->x + row * p->measured->dim, place);
-    return fail(error, STATUS_INPUT, "%s: points %s:%lld: at %s: %s", p->condition->where,
-                p->condition->table, (long long)p->condition->line[row], place, what);
+    const struct measured *measured = &condition->measured;
+    return fail(error, STATUS_INPUT, "%s: points %s:%lld: at %s: %s", condition->where, condition->table,
+                (long long)condition->line[row], POINT_TEXT(measured->dim, measured->x + row * measured->dim),
+                what);
 }
 
 /* Volume and mean shear modulus of the cells at each node. */
@@ -66,7 +65,7 @@ static enum status compare_rows(const struct point_condition *p, struct error *e
              "contradicts line %lld, %.3g m away: their displacements differ by %.3g m, which turns over "
              "what is between: give standard deviations, or leave one out",
              (long long)p->condition->line[pair.first], pair.distance, pair.apart);
-    return fail_at(p, pair.second, error, what);
+    return condition_fail_at(p->condition, pair.second, error, what);
 }
 
 /* The nearest of the nodes of the field at point i. */
@@ -181,8 +180,8 @@ static enum status check_rows(const struct point_condition *p, int64_t first, st
     for (int64_t i = 0; i < p->measured->count; i++) {
         for (int a = 0; a < dim && !(p->measured->deviation[i] > 0.0); a++) {
             if (!isnan(p->measured->u[i * dim + a]) && dependent[row++]) {
-                return fail_at(
-                    p, i, error,
+                return condition_fail_at(
+                    p->condition, i, error,
                     "too many points for the nodes there, one twice, or one on what another section "
                     "holds: leave it out, give standard deviations, or refine the cloud");
             }
