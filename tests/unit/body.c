@@ -219,17 +219,6 @@ TEST(many_blocks)
             (void)body_force(&body, u, force);
             assert_memory_equal(force, expected, (size_t)count * sizeof *force);
         }
-        assert_true(body.bound_parts.count > 1);
-        body_diagonal(&body, expected);
-        for (body.bound_parts.threads = 2; body.bound_parts.threads <= 3; body.bound_parts.threads++) {
-            body_diagonal(&body, force);
-            assert_memory_equal(force, expected, (size_t)sample.cloud.node_count * sizeof *force);
-        }
-        body.bound_parts = (struct chunks){body.block_count, 1, 1};
-        body_diagonal(&body, expected);
-        for (int64_t n = 0; n < sample.cloud.node_count; n++) {
-            NEAR_TO(force[n], expected[n], 1e-14 * expected[n]);
-        }
         check_work(&sample, &body, u, 1, &random);
     }
 }

@@ -262,7 +262,7 @@ TEST(diagonal)
         double *force = zeros(count, sizeof *force);
         double *u = deformed ? deformed_field(sample, &body, force, &random) : zeros(count, sizeof *u);
         (void)body_force(&body, u, force);
-        body_diagonal(&body, bound);
+        body_diagonal(&body, false, bound);
         for (int64_t n = 0; n < sample->cloud.node_count; n++) {
             double trace = 0.0;
             for (int64_t k = n * dim; k < (n + 1) * dim; k++) {

@@ -114,7 +114,7 @@ static void measure(int dim, double thickness, double result[3])
     double *stiffness = zeros(nodes, sizeof *stiffness);
     assert_true(body.cells.merged_count > 0);
     result[2] = body_force(&body, u, force).least_jacobian;
-    body_diagonal(&body, stiffness);
+    body_diagonal(&body, false, stiffness);
     result[1] = largest(stiffness, nodes);
     result[0] = body_energy(&body, u);
 }
@@ -126,7 +126,7 @@ TEST_IN_EACH_DIM(flatness)
     measure(dim, 1e-4 * sample_size, thick);
     measure(dim, 1e-7 * sample_size, thin);
     for (int k = 0; k < 3; k++) {
-        NEAR_TO(thin[k], thick[k], 0.01 * thick[k]);
+        NEAR_TO(thin[k], thick[k], 0.02 * thick[k]);
     }
 }
 

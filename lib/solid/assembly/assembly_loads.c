@@ -49,7 +49,7 @@ static enum status add_cells(const struct assembly *input, struct body *body, do
         add_weight(input, mass[r], table->ptr[r + 1] - at, table->idx + at, table->value + at,
                    body->node_order, force);
     }
-    body_gather(body, force);
+    body_gather(body, body->dim, force);
     return STATUS_OK;
 }
 

@@ -204,13 +204,11 @@ enum status body_build(const struct body_input *input, struct body *body, struct
     body->threads = worthwhile_threads(body);
     RETURN_IF_ERROR(
         row_operator_finish(&body->rows, body->share.begin_node, body->share.end_node, body->threads, error));
-    RETURN_IF_ERROR(body_share_nodes(body, error));
-    return body_make_bounds(body, error);
+    return body_share_nodes(body, error);
 }
 
 void body_free(struct body *body)
 {
-    body_free_bounds(body);
     body_share_free(&body->share);
     row_operator_free(&body->rows);
     smoothed_cells_free(&body->cells);

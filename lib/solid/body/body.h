@@ -5,7 +5,6 @@
  * 2010). Any number of threads gives the same bits (base/sparse.h). */
 #pragma once
 
-#include "base/chunks.h"
 #include "base/status.h"
 #include "solid/body/body_share.h"
 #include "solid/body/prony.h"
@@ -120,11 +119,7 @@ struct body {
     struct prony prony; /* histories of viscoelastic points */
     bool averaged;      /* nodal volumetric averaging */
     struct nodal_volumes volumes;
-    int threads;                       /* worth using for so many pairs */
-    struct chunks bound_parts;         /* of the blocks, by each of which body_diagonal sums; */
-    double *bound;                     /* node_count for each: scratch */
-    struct cell_functions *bound_work; /* for each part */
-    int64_t *bound_first;              /* of each process: the parts whose sums end with it */
+    int threads; /* worth using for so many pairs */
 };
 
 /* Lay out a body; the arrays are copied. STATUS_INPUT for a point without neighbours
@@ -143,9 +138,9 @@ struct deformation {
 struct deformation body_force(struct body *body, const double *u, double *force);
 
 /* body_own_force: the same for the nodes of this process only. body_gather completes on all processes a
- * vector[node_count * dim] of which each has the values at its own nodes. */
+ * vector[node_count * width], width <= dim, of which each has the values at its own nodes. */
 struct deformation body_own_force(struct body *body, const double *u, double *force);
-void body_gather(struct body *body, double *vector);
+void body_gather(struct body *body, int width, double *vector);
 
 /* Limit the bulk modulus to `most` shear moduli; INFINITY: no limit. Augmentations of the nodal pressures,
  * which begin at zero, supply the rest (augmented Lagrangian: Simo and Taylor 1991). Without nodal volumes
@@ -201,13 +196,9 @@ struct inelliptic {
 };
 struct inelliptic body_inelliptic(struct body *body);
 
-/* stiffness[node_count], N/m (2D: N/m2): bounds the diagonal of the stiffness at the last evaluation's F (of
- * smoothed cells about, far strained ones may exceed it), as sum_q w W''(y (x) grad phi), the second
- * derivative of the energy along the rank-one change of F that is stiffest, y = F^-T grad phi; at rest sum_q
- * w (lambda + 2 mu) |grad phi|^2. The neo-Hookean formula serves all materials. A
- * limit of the bulk modulus (body_limit_bulk) counts. */
-void body_diagonal(struct body *body, double *stiffness);
-
-/* The same for smoothed cells, with the linear shape functions of the cells in place of phi, which is faster.
- * `rest`: with F = I. */
-void body_nodal_diagonal(struct body *body, bool rest, double *stiffness);
+/* stiffness[node_count], N/m (2D: N/m2): bounds the diagonal of the stiffness at the last evaluation's F, or
+ * with `rest` at F = I, as sum_q w W''(y (x) grad phi), the second derivative of the energy along the rank-one
+ * change of F that is stiffest, y = F^-T grad phi; at rest sum_q w (lambda + 2 mu) |grad phi|^2. The
+ * neo-Hookean formula serves all materials. Of smoothed cells phi are the linear shape functions, so that the
+ * bound holds about. A limit of the bulk modulus (body_limit_bulk) counts. Collective. */
+void body_diagonal(struct body *body, bool rest, double *stiffness);

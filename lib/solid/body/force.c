@@ -202,28 +202,27 @@ struct deformation body_own_force(struct body *body, const double *u, double *fo
 struct deformation body_force(struct body *body, const double *u, double *force)
 {
     struct deformation deformation = body_own_force(body, u, force);
-    body_gather(body, force);
+    body_gather(body, body->dim, force);
     return deformation;
 }
 
-void body_gather(struct body *body, double *vector)
+void body_gather(struct body *body, int width, double *vector)
 {
     const struct body_share *share = &body->share;
     const int64_t *node = body->node_order;
     double *by_place = body->force; /* scratch here */
-    int dim = body->dim;
     if (share->ranks == NULL) {
         return;
     }
     for (int64_t p = share->begin_node; p < share->end_node; p++) {
-        for (int a = 0; a < dim; a++) {
-            by_place[p * dim + a] = vector[node[p] * dim + a];
+        for (int a = 0; a < width; a++) {
+            by_place[p * width + a] = vector[node[p] * width + a];
         }
     }
-    ranks_gather(share->ranks, by_place, (size_t)dim * sizeof *vector, share->node_first);
+    ranks_gather(share->ranks, by_place, (size_t)width * sizeof *vector, share->node_first);
     for (int64_t p = 0; p < body->node_count; p++) {
-        for (int a = 0; a < dim; a++) {
-            vector[node[p] * dim + a] = by_place[p * dim + a];
+        for (int a = 0; a < width; a++) {
+            vector[node[p] * width + a] = by_place[p * width + a];
         }
     }
 }

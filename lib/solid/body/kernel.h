@@ -34,7 +34,3 @@ void force_cell_forces(struct body *body, int64_t block, block_rows P, block_row
 /* X and the strains of a viscoelastic block at the last evaluation: see prony.h. */
 typedef double prony_rows[PRONY_MOST][BLOCK_MOST_POINTS];
 void force_prony_state(const struct body *body, int64_t block, prony_rows X, prony_rows x);
-
-/* Scratch of body_diagonal. */
-MUST_CHECK enum status body_make_bounds(struct body *body, struct error *error);
-void body_free_bounds(struct body *body);

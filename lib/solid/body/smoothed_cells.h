@@ -98,21 +98,3 @@ int smoothed_cells_rows(const struct body *body, int64_t q, int32_t row[SMOOTHED
 
 /* Vertex k of cell q, as a number in the body's order. */
 int32_t smoothed_cells_node(const struct body *body, int64_t q, int k);
-
-/* The nodes whose shape functions are not zero on a cell or its group, in the body's order, and the mean
- * gradients of these over that. For bodies without smoothed cells only the room for the gradients. */
-struct cell_functions {
-    int32_t *slot;    /* node_count: index of a node in the list, valid where node[slot] is that node */
-    int32_t *node;    /* the list, with room for the most nodes that a cell has */
-    double *gradient; /* dim for each node of the list, 1/m */
-    int64_t count;
-};
-MUST_CHECK enum status cell_functions_make(const struct body *body, struct cell_functions *functions,
-                                           struct error *error);
-void cell_functions_free(struct cell_functions *functions);
-
-/* Set *functions to those of cell q, in the body's order. */
-void cell_functions_list(const struct body *body, int64_t q, struct cell_functions *functions);
-
-/* The same for the linear shape functions of the cells. */
-void cell_functions_list_linear(const struct body *body, int64_t q, struct cell_functions *functions);

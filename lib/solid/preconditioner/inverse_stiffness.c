@@ -346,7 +346,7 @@ enum status inverse_stiffness_factor_by(const struct solid_system *system, int64
     RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(&by_place.idx, nodes * MOST_ENTRIES, error));
     RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(&by_place.block, nodes * MOST_ENTRIES * values, error));
     NEW_SCRATCH(double, diagonal, nodes, error);
-    body_nodal_diagonal((struct body *)&system->body, true, diagonal);
+    body_diagonal((struct body *)&system->body, true, diagonal);
     for (int64_t n = 0; n < nodes; n++) {
         least += least_share * diagonal[n] / (double)nodes;
     }

@@ -278,7 +278,7 @@ void system_resist(struct solid_system *system, const double *u, double *force)
     system_add_penalties(system, u, force);
     (void)system_pull_membranes(system, u, force);
     negate(system, force);
-    body_gather(&system->body, force);
+    body_gather(&system->body, system->dim, force);
 }
 
 struct deformation system_smooth_residual(struct solid_system *system, const double *u, double *residual)
@@ -292,7 +292,7 @@ struct deformation system_smooth_residual(struct solid_system *system, const dou
     double loaded = clock_seconds();
     system_add_penalties(system, u, residual);
     double held = clock_seconds();
-    body_gather(&system->body, residual);
+    body_gather(&system->body, system->dim, residual);
     system->cost.force += forced - started + clock_seconds() - held;
     system->cost.loads += loaded - forced;
     system->cost.constraints += held - loaded;
@@ -362,10 +362,8 @@ static void add_penalties_to_bound(const struct solid_system *system, double *ma
 void system_relaxation_mass(struct solid_system *system, bool rest, double *mass)
 {
     double sum = 0.0;
-    if (system_has_inverse(system)) {
-        body_nodal_diagonal(&system->body, rest, mass);
-    } else {
-        body_diagonal(&system->body, mass);
+    body_diagonal(&system->body, rest, mass);
+    if (!system_has_inverse(system)) {
         for (int64_t i = 0; i < system->membrane_count; i++) {
             membrane_add_to_bound(&system->membranes[i], mass);
         }
