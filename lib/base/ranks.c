@@ -30,10 +30,9 @@ int64_t ranks_most(const struct ranks *ranks, int64_t value)
 
 enum status ranks_agree(const struct ranks *ranks, enum status status, struct error *error)
 {
-    enum { NUMBERS = sizeof *error / sizeof(double) };
-    _Static_assert(NUMBERS * sizeof(double) == sizeof *error, "a message is sent as numbers");
-    double text[NUMBERS];
-    int64_t first = status != STATUS_OK ? ranks_rank(ranks) : ranks_count(ranks);
+    enum { NUMBERS = sizeof *error / sizeof(int64_t) };
+    _Static_assert(NUMBERS * sizeof(int64_t) == sizeof *error, "a message is sent as numbers");
+    int64_t first = status != STATUS_OK ? ranks_rank(ranks) : ranks_count(ranks), text[NUMBERS];
     if (ranks == NULL) {
         return status;
     }
@@ -41,18 +40,12 @@ enum status ranks_agree(const struct ranks *ranks, enum status status, struct er
     if (first == ranks->count) {
         return STATUS_OK;
     }
-    if (first != ranks->rank) {
-        status = STATUS_OK;
-        ranks->receive(ranks, (int)first, text, NUMBERS);
-        memcpy(error, text, sizeof *error);
-    }
     memcpy(text, error, sizeof *error);
-    for (int r = 0; r < ranks->count && first == ranks->rank; r++) {
-        if (r != ranks->rank) {
-            ranks->send(ranks, r, text, NUMBERS);
-        }
+    for (int i = 0; i < NUMBERS; i++) {
+        text[i] = ranks->most(ranks, first == ranks->rank ? text[i] : INT64_MIN);
     }
-    return (enum status)ranks->most(ranks, (int64_t)status);
+    memcpy(error, text, sizeof *error);
+    return (enum status)ranks->most(ranks, first == ranks->rank ? (int64_t)status : 0);
 }
 
 enum status ranks_share(const struct ranks *ranks, int64_t items, const double *work, int64_t **first,
@@ -151,12 +144,14 @@ static enum status exchange_lists(const struct ranks *ranks, const int64_t *send
         in_turn[r + 1] = r + 1;
         each[r] = send_first[r + 1] - send_first[r];
     }
-    ranks->exchange(ranks, sizeof *each, each, in_turn, many, in_turn);
+    ranks->begin(ranks, sizeof *each, each, in_turn, many, in_turn);
+    ranks->finish(ranks);
     for (int r = 0; r < count; r++) {
         (*receive_first)[r + 1] = (*receive_first)[r] + many[r];
     }
     RETURN_IF_ERROR(NEW_ARRAY(receive, (*receive_first)[count], error));
-    ranks->exchange(ranks, sizeof *send, send, send_first, *receive, *receive_first);
+    ranks->begin(ranks, sizeof *send, send, send_first, *receive, *receive_first);
+    ranks->finish(ranks);
     return STATUS_OK;
 }
 

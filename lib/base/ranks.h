@@ -18,17 +18,11 @@ struct ranks {
      * first[r + 1]; with first == NULL, each process contributes one. */
     void (*gather)(const struct ranks *ranks, void *items, size_t size, const int64_t *first);
     /* send[send_first[r]] to before send[send_first[r + 1]] goes to process r; what process r sends is stored
-     * from receive[receive_first[r]] on. Processes that exchange nothing do not wait for each other. */
-    void (*exchange)(const struct ranks *ranks, size_t size, const void *send, const int64_t *send_first,
-                     void *receive, const int64_t *receive_first);
-    /* The same in two halves. In between the process may compute, but calls no other function of this struct.
-     */
+     * from receive[receive_first[r]] on. In two halves: in between the process may compute, but calls no
+     * other function of this struct. Processes that exchange nothing do not wait for each other. */
     void (*begin)(const struct ranks *ranks, size_t size, const void *send, const int64_t *send_first,
                   void *receive, const int64_t *receive_first);
     void (*finish)(const struct ranks *ranks);
-    /* Send x[count] to process `to`; receive it from process `from`. */
-    void (*send)(const struct ranks *ranks, int to, const double *x, int64_t count);
-    void (*receive)(const struct ranks *ranks, int from, double *x, int64_t count);
     /* The maximum of `value` over all processes. */
     int64_t (*most)(const struct ranks *ranks, int64_t value);
     void *context;

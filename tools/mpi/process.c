@@ -138,32 +138,6 @@ static void finish(const struct ranks *ranks)
     end_message(&message);
 }
 
-static void exchange(const struct ranks *ranks, size_t size, const void *send, const int64_t *send_first,
-                     void *receive, const int64_t *receive_first)
-{
-    begin(ranks, size, send, send_first, receive, receive_first);
-    finish(ranks);
-}
-
-static void send_to(const struct ranks *ranks, int to, const double *x, int64_t count)
-{
-    struct cost_of_message message = begin_message();
-    (void)ranks;
-    MPI_Isend(x, (int)count, MPI_DOUBLE, to, 1, MPI_COMM_WORLD, own.requests);
-    wait_for(1, own.requests);
-    own.sent += (double)count * sizeof *x;
-    end_message(&message);
-}
-
-static void receive_from(const struct ranks *ranks, int from, double *x, int64_t count)
-{
-    struct cost_of_message message = begin_message();
-    (void)ranks;
-    MPI_Irecv(x, (int)count, MPI_DOUBLE, from, 1, MPI_COMM_WORLD, own.requests);
-    wait_for(1, own.requests);
-    end_message(&message);
-}
-
 static int64_t most(const struct ranks *ranks, int64_t value)
 {
     struct cost_of_message message = begin_message();
@@ -180,13 +154,7 @@ void process_begin(int *argc, char ***argv)
     static char name[] = "mtled"; /* the same provenance and messages */
     int provided;
     struct ranks *ranks = &own.ranks;
-    *ranks = (struct ranks){.gather = gather,
-                            .exchange = exchange,
-                            .begin = begin,
-                            .finish = finish,
-                            .send = send_to,
-                            .receive = receive_from,
-                            .most = most};
+    *ranks = (struct ranks){.gather = gather, .begin = begin, .finish = finish, .most = most};
     const char *policy = getenv("OMP_WAIT_POLICY");
     own.patient = policy != NULL && strcasecmp(policy, "passive") == 0;
     MPI_Init_thread(argc, argv, MPI_THREAD_FUNNELED, &provided);

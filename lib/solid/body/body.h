@@ -197,8 +197,8 @@ struct inelliptic {
 struct inelliptic body_inelliptic(struct body *body);
 
 /* stiffness[node_count], N/m (2D: N/m2): bounds the diagonal of the stiffness at the last evaluation's F, or
- * with `rest` at F = I, as sum_q w W''(y (x) grad phi), the second derivative of the energy along the rank-one
- * change of F that is stiffest, y = F^-T grad phi; at rest sum_q w (lambda + 2 mu) |grad phi|^2. The
+ * with `rest` at F = I, as sum_q w W''(y (x) grad phi), the second derivative of the energy along the
+ * rank-one change of F that is stiffest, y = F^-T grad phi; at rest sum_q w (lambda + 2 mu) |grad phi|^2. The
  * neo-Hookean formula serves all materials. Of smoothed cells phi are the linear shape functions, so that the
  * bound holds about. A limit of the bulk modulus (body_limit_bulk) counts. Collective. */
 void body_diagonal(struct body *body, bool rest, double *stiffness);
