@@ -144,14 +144,12 @@ static enum status exchange_lists(const struct ranks *ranks, const int64_t *send
         in_turn[r + 1] = r + 1;
         each[r] = send_first[r + 1] - send_first[r];
     }
-    ranks->begin(ranks, sizeof *each, each, in_turn, many, in_turn);
-    ranks->finish(ranks);
+    ranks->exchange(ranks, sizeof *each, each, in_turn, many, in_turn);
     for (int r = 0; r < count; r++) {
         (*receive_first)[r + 1] = (*receive_first)[r] + many[r];
     }
     RETURN_IF_ERROR(NEW_ARRAY(receive, (*receive_first)[count], error));
-    ranks->begin(ranks, sizeof *send, send, send_first, *receive, *receive_first);
-    ranks->finish(ranks);
+    ranks->exchange(ranks, sizeof *send, send, send_first, *receive, *receive_first);
     return STATUS_OK;
 }
 
@@ -176,7 +174,7 @@ void halo_free(struct halo *halo)
     *halo = (struct halo){0};
 }
 
-void halo_begin(const struct halo *halo, int width, const double *x)
+void halo_exchange(const struct halo *halo, int width, double *x)
 {
     const struct ranks *ranks = halo->ranks;
     size_t size = (size_t)width * sizeof *x;
@@ -186,24 +184,8 @@ void halo_begin(const struct halo *halo, int width, const double *x)
     for (int64_t i = 0; i < halo->send_first[ranks->count]; i++) {
         memcpy(halo->sent + i * width, x + halo->send[i] * width, size);
     }
-    ranks->begin(ranks, size, halo->sent, halo->send_first, halo->received, halo->receive_first);
-}
-
-void halo_finish(const struct halo *halo, int width, double *x)
-{
-    const struct ranks *ranks = halo->ranks;
-    size_t size = (size_t)width * sizeof *x;
-    if (ranks == NULL) {
-        return;
-    }
-    ranks->finish(ranks);
+    ranks->exchange(ranks, size, halo->sent, halo->send_first, halo->received, halo->receive_first);
     for (int64_t i = 0; i < halo->receive_first[ranks->count]; i++) {
         memcpy(x + halo->receive[i] * width, halo->received + i * width, size);
     }
-}
-
-void halo_exchange(const struct halo *halo, int width, double *x)
-{
-    halo_begin(halo, width, x);
-    halo_finish(halo, width, x);
 }

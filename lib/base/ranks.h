@@ -18,11 +18,9 @@ struct ranks {
      * first[r + 1]; with first == NULL, each process contributes one. */
     void (*gather)(const struct ranks *ranks, void *items, size_t size, const int64_t *first);
     /* send[send_first[r]] to before send[send_first[r + 1]] goes to process r; what process r sends is stored
-     * from receive[receive_first[r]] on. In two halves: in between the process may compute, but calls no
-     * other function of this struct. Processes that exchange nothing do not wait for each other. */
-    void (*begin)(const struct ranks *ranks, size_t size, const void *send, const int64_t *send_first,
-                  void *receive, const int64_t *receive_first);
-    void (*finish)(const struct ranks *ranks);
+     * from receive[receive_first[r]] on. Processes that exchange nothing do not wait for each other. */
+    void (*exchange)(const struct ranks *ranks, size_t size, const void *send, const int64_t *send_first,
+                     void *receive, const int64_t *receive_first);
     /* The maximum of `value` over all processes. */
     int64_t (*most)(const struct ranks *ranks, int64_t value);
     void *context;
@@ -79,8 +77,5 @@ MUST_CHECK enum status halo_build(const struct ranks *ranks, int64_t items, cons
                                   struct halo *halo, struct error *error);
 void halo_free(struct halo *halo);
 
-/* Receive the `width` numbers from x[item * width] on of the items of other processes: in two halves, between
- * which other items of x may change; or at once. */
-void halo_begin(const struct halo *halo, int width, const double *x);
-void halo_finish(const struct halo *halo, int width, double *x);
+/* Receive the `width` numbers from x[item * width] on of the items of other processes. */
 void halo_exchange(const struct halo *halo, int width, double *x);

@@ -19,7 +19,6 @@ static struct {
     struct ranks ranks;
     int *count, *place;        /* scratch: of each process */
     MPI_Request *requests;     /* 2 for each process */
-    int begun;                 /* number of requests of the exchange in progress */
     MPI_Comm ends;             /* communicator for failures of processes */
     double sent, waited, spun; /* bytes sent; time of sending and waiting, and processor time of these, s */
     bool patient;              /* waiting processes sleep; false: they spin */
@@ -102,8 +101,8 @@ static void gather(const struct ranks *ranks, void *items, size_t size, const in
     end_message(&message);
 }
 
-static void begin(const struct ranks *ranks, size_t size, const void *send, const int64_t *send_first,
-                  void *receive, const int64_t *receive_first)
+static void exchange(const struct ranks *ranks, size_t size, const void *send, const int64_t *send_first,
+                     void *receive, const int64_t *receive_first)
 {
     struct cost_of_message message = begin_message();
     MPI_Datatype type = type_of(size);
@@ -125,16 +124,8 @@ static void begin(const struct ranks *ranks, size_t size, const void *send, cons
             own.sent += (double)count * (double)size;
         }
     }
-    own.begun = requests;
     MPI_Type_free(&type); /* takes effect when the requests are complete */
-    end_message(&message);
-}
-
-static void finish(const struct ranks *ranks)
-{
-    struct cost_of_message message = begin_message();
-    (void)ranks;
-    wait_for(own.begun, own.requests);
+    wait_for(requests, own.requests);
     end_message(&message);
 }
 
@@ -154,7 +145,7 @@ void process_begin(int *argc, char ***argv)
     static char name[] = "mtled"; /* the same provenance and messages */
     int provided;
     struct ranks *ranks = &own.ranks;
-    *ranks = (struct ranks){.gather = gather, .begin = begin, .finish = finish, .most = most};
+    *ranks = (struct ranks){.gather = gather, .exchange = exchange, .most = most};
     const char *policy = getenv("OMP_WAIT_POLICY");
     own.patient = policy != NULL && strcasecmp(policy, "passive") == 0;
     MPI_Init_thread(argc, argv, MPI_THREAD_FUNNELED, &provided);

@@ -165,85 +165,16 @@ enum status body_share_values(const struct body *body, bool **wanted, struct err
     return STATUS_OK;
 }
 
-/* Without smoothed cells. */
-static int64_t point_of_row(const struct body *body, int64_t row)
-{
-    return row / body->dim;
-}
-
 /* Who has the forces on a row. One without uses has none. */
 static int owner_of_row(const void *context, int64_t row)
 {
     const struct body *body = context;
     const struct field_averages *averages = &body->cells.averages;
     if (!body->smoothed) {
-        return owner_of_point(body, point_of_row(body, row));
+        return owner_of_point(body, row / body->dim);
     }
     int64_t at = averages->use_ptr[row];
     return at < averages->use_ptr[row + 1] ? owner_of_point(body, point_of_use(body, averages->use[at])) : 0;
-}
-
-static int64_t point_itself(const struct body *body, int64_t point)
-{
-    (void)body;
-    return point;
-}
-
-/* Mark the points from which the items that are sent are computed. */
-static void mark_sent(const struct body *body, const struct halo *halo,
-                      int64_t (*point_of)(const struct body *body, int64_t item), bool *is_sent)
-{
-    for (int64_t i = 0; halo->ranks != NULL && i < halo->send_first[halo->ranks->count]; i++) {
-        is_sent[point_of(body, halo->send[i])] = true;
-    }
-}
-
-static bool has_sent(const struct block *block, const bool *is_sent)
-{
-    bool some = false;
-    for (int64_t q = block->first_point; q < block->first_point + block->point_count; q++) {
-        some = some || is_sent[q];
-    }
-    return some;
-}
-
-/* The order of own blocks. */
-static enum status order_blocks(struct body *body, struct error *error)
-{
-    struct body_share *share = &body->share;
-    int64_t border = 0, inner = 0;
-    NEW_SCRATCH(bool, is_sent, body->point_count, error);
-    RETURN_IF_ERROR(NEW_ARRAY(&share->block, share->end_block - share->begin_block, error));
-    mark_sent(body, &share->strains, point_itself, is_sent);
-    mark_sent(body, &share->uses, point_of_use, is_sent);
-    if (!body->smoothed) {
-        mark_sent(body, &share->rows, point_of_row, is_sent);
-    }
-    for (int64_t b = share->begin_block; b < share->end_block; b++) {
-        share->border_count += has_sent(&body->blocks[b], is_sent);
-    }
-    for (int64_t b = share->begin_block; b < share->end_block; b++) {
-        bool at_border = has_sent(&body->blocks[b], is_sent);
-        share->block[at_border ? border++ : share->border_count + inner++] = b;
-    }
-    return STATUS_OK;
-}
-
-/* Divide the rows that are summed here into those that other processes need, and the rest. */
-static enum status order_sums(struct body *body, struct error *error)
-{
-    struct body_share *share = &body->share;
-    int64_t rows = row_count(body);
-    NEW_SCRATCH(bool, is_sent, rows, error);
-    NEW_SCRATCH(bool, is_inner, rows, error);
-    for (int64_t i = 0; i < share->rows.send_first[share->ranks->count]; i++) {
-        is_sent[share->rows.send[i]] = true;
-    }
-    for (int64_t r = 0; r < rows; r++) {
-        is_inner[r] = !is_sent[r] && owner_of_row(body, r) == share->ranks->rank;
-    }
-    RETURN_IF_ERROR(row_ranges_of(0, rows, is_sent, &share->sums, error));
-    return row_ranges_of(0, rows, is_inner, &share->inner_sums, error);
 }
 
 static int owner_of_use(const void *body, int64_t use)
@@ -251,38 +182,29 @@ static int owner_of_use(const void *body, int64_t use)
     return owner_of_point(body, point_of_use(body, use));
 }
 
-/* The uses of the rows that are summed here. */
+/* The rows that are summed here, and their uses. */
 static enum status share_uses(struct body *body, struct error *error)
 {
     struct body_share *share = &body->share;
     const struct field_averages *averages = &body->cells.averages;
-    int64_t rows = row_count(body);
-    NEW_SCRATCH(bool, sums, rows, error);
+    NEW_SCRATCH(bool, sums, averages->row_count, error);
     NEW_SCRATCH(bool, uses, averages->use_count, error);
-    for (int64_t r = 0; r < rows; r++) {
-        sums[r] = owner_of_row(body, r) == share->ranks->rank;
+    for (int64_t r = 0; r < averages->row_count; r++) {
+        sums[r] = owner_of_row(body, r) == ranks_rank(share->ranks);
         for (int64_t i = averages->use_ptr[r]; i < averages->use_ptr[r + 1] && sums[r]; i++) {
             uses[averages->use[i]] = true;
         }
     }
+    RETURN_IF_ERROR(row_ranges_of(0, averages->row_count, sums, &share->sums, error));
     return halo_build(share->ranks, averages->use_count, uses, body->dim, owner_of_use, body, &share->uses,
                       error);
 }
 
 enum status body_share_rows(struct body *body, const bool *wanted, struct error *error)
 {
-    struct body_share *share = &body->share;
-    if (share->ranks == NULL) {
-        RETURN_IF_ERROR(order_blocks(body, error));
-        return row_ranges_of(0, row_count(body), NULL, &share->inner_sums, error);
-    }
-    if (body->smoothed) {
-        RETURN_IF_ERROR(share_uses(body, error));
-    }
-    RETURN_IF_ERROR(halo_build(share->ranks, row_count(body), wanted, VECTOR_STRIDE(body->dim), owner_of_row,
-                               body, &share->rows, error));
-    RETURN_IF_ERROR(order_blocks(body, error));
-    return body->smoothed ? order_sums(body, error) : STATUS_OK;
+    RETURN_IF_ERROR(body->smoothed ? share_uses(body, error) : STATUS_OK);
+    return halo_build(body->share.ranks, row_count(body), wanted, VECTOR_STRIDE(body->dim), owner_of_row,
+                      body, &body->share.rows, error);
 }
 
 enum status body_share_nodes(struct body *body, struct error *error)
@@ -301,8 +223,6 @@ void body_share_free(struct body_share *share)
     row_ranges_free(&share->values);
     row_ranges_free(&share->placed);
     row_ranges_free(&share->sums);
-    row_ranges_free(&share->inner_sums);
-    free(share->block);
     halo_free(&share->strains);
     halo_free(&share->pressures);
     halo_free(&share->uses);

@@ -6,7 +6,7 @@
  * cells need, the stresses there, and, with the rows of the transposed operator, the forces on own nodes.
  * In between, processes exchange rows at their borders: those with own nodes in them that others have
  * computed. With smoothed cells a row has forces from all cells around it; the process of the first of these
- * cells sums them. What others need is computed first, and sent while the rest is computed. */
+ * cells sums them. */
 #pragma once
 
 #include "base/ranks.h"
@@ -21,16 +21,13 @@ struct body_share {
     int64_t *node_first;       /* its nodes in the body's order, */
     int64_t *volume_first;     /* and its nodal volumes */
     int64_t begin_block, end_block, begin_point, end_point, begin_node, end_node; /* of this one */
-    int64_t *block;               /* blocks of this process in the order in which they are worked on, */
-    int64_t border_count;         /* first those at its border, from which others need strains or forces */
-    struct row_ranges values;     /* rows of the operator that are computed here, */
-    struct row_ranges placed;     /* and the nodes in them, in the body's order */
-    struct row_ranges sums;       /* smoothed cells: rows whose forces are summed here, for others, */
-    struct row_ranges inner_sums; /* and for this process alone */
-    struct halo strains;          /* of points: for nodal volumes */
-    struct halo pressures;        /* of nodal volumes: those beside own ones, and at own points */
-    struct halo uses;             /* of smoothed cells: forces on rows that are summed here */
-    struct halo rows;             /* forces on rows, for own nodes */
+    struct row_ranges values; /* rows of the operator that are computed here, */
+    struct row_ranges placed; /* and the nodes in them, in the body's order */
+    struct row_ranges sums;   /* smoothed cells: rows whose forces are summed here */
+    struct halo strains;      /* of points: for nodal volumes */
+    struct halo pressures;    /* of nodal volumes: those beside own ones, and at own points */
+    struct halo uses;         /* of smoothed cells: forces on rows that are summed here */
+    struct halo rows;         /* forces on rows, for own nodes */
 };
 
 /* Distribute the blocks of a body, which are known, and its nodes over the processes. */
@@ -53,10 +50,8 @@ MUST_CHECK enum status body_share_nodes(struct body *body, struct error *error);
 
 void body_share_free(struct body_share *share);
 
-/* ranks_gather and halo exchanges inside a parallel region, to be called by all its threads. */
+/* ranks_gather and halo_exchange inside a parallel region, to be called by all its threads. */
 void body_share_gather(const struct body_share *share, void *items, size_t size, const int64_t *first);
-void body_share_begin(const struct body_share *share, struct halo *halo, int width, const double *x);
-void body_share_finish(const struct body_share *share, struct halo *halo, int width, double *x);
 void body_share_exchange(const struct body_share *share, struct halo *halo, int width, double *x);
 
 /* Collect the nodal pressures of all processes at the last evaluation; and the state of all points. */

@@ -10,27 +10,13 @@ void body_share_gather(const struct body_share *share, void *items, size_t size,
     }
 }
 
-void body_share_begin(const struct body_share *share, struct halo *halo, int width, const double *x)
-{
-    if (share->ranks != NULL) {
-#pragma omp master
-        halo_begin(halo, width, x);
-    }
-}
-
-void body_share_finish(const struct body_share *share, struct halo *halo, int width, double *x)
-{
-    if (share->ranks != NULL) {
-#pragma omp master
-        halo_finish(halo, width, x);
-#pragma omp barrier
-    }
-}
-
 void body_share_exchange(const struct body_share *share, struct halo *halo, int width, double *x)
 {
-    body_share_begin(share, halo, width, x);
-    body_share_finish(share, halo, width, x);
+    if (share->ranks != NULL) {
+#pragma omp master
+        halo_exchange(halo, width, x);
+#pragma omp barrier
+    }
 }
 
 void body_share_collect_pressures(struct body *body)

@@ -74,39 +74,22 @@ static void apply_transposed(const struct body *body, const double *x, double *y
     }
 }
 
-static void sum_uses(struct body *body, const struct row_ranges *rows)
+static void sum_uses(struct body *body)
 {
+    const struct row_ranges *rows = &body->share.sums;
 #pragma omp for schedule(static)
     for (int64_t i = 0; i < rows->count; i++) {
         force_sum_uses(body->dim, &body->cells.averages, rows->items[i].begin, rows->items[i].end);
     }
 }
 
-/* Process the own blocks from `first` to before `last` of the processing order. */
-static void for_blocks(struct body *body, int64_t first, int64_t last,
-                       void (*work)(struct body *body, int64_t block))
+/* Process the own blocks. */
+static void for_blocks(struct body *body, void (*work)(struct body *body, int64_t block))
 {
 #pragma omp for schedule(static)
-    for (int64_t i = first; i < last; i++) {
-        work(body, body->share.block[i]);
+    for (int64_t b = body->share.begin_block; b < body->share.end_block; b++) {
+        work(body, b);
     }
-}
-
-/* Process all own blocks. The halo of their results is exchanged while the blocks are processed that no other
- * process needs. NULL: no halo. */
-static void for_all_blocks(struct body *body, void (*work)(struct body *body, int64_t block),
-                           struct halo *halo, int width, double *values)
-{
-    const struct body_share *share = &body->share;
-    int64_t border = share->border_count, count = share->end_block - share->begin_block;
-    if (share->ranks == NULL || halo == NULL) {
-        for_blocks(body, 0, count, work);
-        return;
-    }
-    for_blocks(body, 0, border, work);
-    body_share_begin(share, halo, width, values);
-    for_blocks(body, border, count, work);
-    body_share_finish(share, halo, width, values);
 }
 
 static void place_nodes(struct body *body, const double *u)
@@ -152,8 +135,9 @@ static void set_state(struct body *body, const double *u)
 {
     place_nodes(body, u);
     apply(body, body->u, body->smoothed ? body->cells.averages.value : body->derivative);
-    for_all_blocks(body, set_block, body->averaged ? &body->share.strains : NULL, 1, body->volumes.strain);
+    for_blocks(body, set_block);
     if (body->averaged) {
+        body_share_exchange(&body->share, &body->share.strains, 1, body->volumes.strain);
         nodal_volumes_evaluate(body);
     }
 }
@@ -168,14 +152,14 @@ static void evaluate(struct body *body, const double *u, double *force)
     {
         set_state(body, u);
         if (body->smoothed) {
-            for_all_blocks(body, stress_cell_block, &share->uses, body->dim, averages->use_force);
-            sum_uses(body, &share->sums);
-            body_share_begin(share, &share->rows, stride, averages->force);
-            sum_uses(body, &share->inner_sums);
-            body_share_finish(share, &share->rows, stride, averages->force);
+            for_blocks(body, stress_cell_block);
+            body_share_exchange(share, &share->uses, body->dim, averages->use_force);
+            sum_uses(body);
+            body_share_exchange(share, &share->rows, stride, averages->force);
             apply_transposed(body, averages->force, body->force);
         } else {
-            for_all_blocks(body, stress_point_block, &share->rows, stride, body->derivative);
+            for_blocks(body, stress_point_block);
+            body_share_exchange(share, &share->rows, stride, body->derivative);
             apply_transposed(body, body->derivative, body->force);
         }
         body_share_gather(share, body->blocks, sizeof *body->blocks, share->block_first);

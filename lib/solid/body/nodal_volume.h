@@ -3,12 +3,12 @@
  *
  * A body with kappa <= s does not lock and has no nodal pressures.
  *
- * epsilon makes the projection the compliance of a bubble in each cell, as in the MINI element (Arnold, Brezzi
- * and Fortin 1984). The field a beta, with beta the product of all N_k and a free vector a, does not change
- * the volume of the cell. The pressure does the work -w mean(beta) a . grad pi on it. In a regular cell its
- * elastic energy mu |sym grad|^2 is w mu / 2 (1 + 1 / d) mean |grad beta|^2 |a|^2. The energy of both is
- * stationary at -w / (2 mu) |grad pi|^2 mean(beta)^2 / ((1 + 1 / d) mean |grad beta|^2), which is minus the
- * second term of (14) in pi . A pi / 2 with epsilon = 1/5 in 2D and 3/28 in 3D.
+ * epsilon makes the projection the compliance of a bubble in each cell, as in the MINI element (Arnold,
+ * Brezzi and Fortin 1984). The field a beta, with beta the product of all N_k and a free vector a, does not
+ * change the volume of the cell. The pressure does the work -w mean(beta) a . grad pi on it. In a regular
+ * cell its elastic energy mu |sym grad|^2 is w mu / 2 (1 + 1 / d) mean |grad beta|^2 |a|^2. The energy of
+ * both is stationary at -w / (2 mu) |grad pi|^2 mean(beta)^2 / ((1 + 1 / d) mean |grad beta|^2), which is
+ * minus the second term of (14) in pi . A pi / 2 with epsilon = 1/5 in 2D and 3/28 in 3D.
  *
  * A change of volume of wave number k on nodes at distance h has about the stiffness
  *
