@@ -4,7 +4,6 @@
 
 #include "solid/preconditioner/coarse_space.h"
 
-/* Set centres, radius, and of_centre: for each centre the nodes within the radius and their distances, m. A
- * node that is within that of no centre is listed with the distance 0 from the nearest one. */
+/* Set centres, radius, and of_centre: for each centre the nodes within the radius and their distances, m. */
 MUST_CHECK enum status coarse_centres_pick(struct coarse_space *coarse, const struct neighbours *neighbours,
                                            struct error *error);
