@@ -28,12 +28,13 @@ void stream_init(struct stream *stream)
     memset(stream, 0, sizeof *stream);
 }
 
-static void section_free(struct section *section)
+void section_free(struct section *section)
 {
     FREE_ALL(section->name, section->attributes);
     if (section->owned) {
         free(section->data);
     }
+    *section = (struct section){0};
 }
 
 void stream_free(struct stream *stream)
@@ -128,15 +129,15 @@ static enum status attributes_validate(const char *name, const char *attributes,
     return STATUS_OK;
 }
 
-enum status section_validate(const char *name, enum element_type type, int64_t rows, int64_t cols,
-                             const char *attributes, struct error *error)
+enum status section_validate(const struct section *section, struct error *error)
 {
-    int64_t bytes;
-    RETURN_IF_ERROR(name_validate(name, error));
-    RETURN_IF_ERROR(attributes_validate(name, attributes, error));
+    int64_t bytes, rows = section->rows, cols = section->cols;
+    RETURN_IF_ERROR(name_validate(section->name, error));
+    RETURN_IF_ERROR(attributes_validate(section->name, section->attributes, error));
     if (rows < 0 || cols < 1 || cols > COLUMN_LIMIT || __builtin_mul_overflow(rows, cols, &bytes) ||
-        __builtin_mul_overflow(bytes, (int64_t)element_size(type), &bytes)) {
-        return fail(error, STATUS_INPUT, "%s: %jd rows of %jd columns are out of bounds", name, rows, cols);
+        __builtin_mul_overflow(bytes, (int64_t)element_size(section->type), &bytes)) {
+        return fail(error, STATUS_INPUT, "%s: %jd rows of %jd columns are out of bounds", section->name, rows,
+                    cols);
     }
     return STATUS_OK;
 }
@@ -173,9 +174,9 @@ enum status stream_need(const struct stream *stream, const char *name, enum elem
     return STATUS_OK;
 }
 
-enum status stream_append(struct stream *stream, const char *name, enum element_type type, int64_t rows,
-                          int64_t cols, const char *attributes, struct section **section, struct error *error)
+enum status stream_add(struct stream *stream, struct section *section, struct error *error)
 {
+    struct section *slot = find(stream, section->name);
     /* Allocate all slots at once, as untouched zero pages: sections never move when others are added. */
     if (stream->sections == NULL) {
         stream->sections = calloc(STREAM_SECTION_LIMIT, sizeof *stream->sections);
@@ -183,62 +184,42 @@ enum status stream_append(struct stream *stream, const char *name, enum element_
             return fail_memory(error, "sections");
         }
     }
-    if (stream->section_count == STREAM_SECTION_LIMIT) {
-        return fail(error, STATUS_INPUT, "%s: more than %d sections", name, STREAM_SECTION_LIMIT);
+    if (slot == NULL && stream->section_count == STREAM_SECTION_LIMIT) {
+        return fail(error, STATUS_INPUT, "%s: more than %d sections", section->name, STREAM_SECTION_LIMIT);
     }
-    struct section slot = {
-        .name = strdup(name), .type = type, .rows = rows, .cols = cols, .attributes = strdup(attributes)};
-    if (slot.name == NULL || slot.attributes == NULL) {
-        section_free(&slot);
-        return fail_memory(error, name);
+    if (slot == NULL) {
+        slot = &stream->sections[stream->section_count++];
+    } else if (slot->data == section->data) {
+        slot->owned = false;
+    } else {
+        section_give_back(stream, slot, true);
     }
-    *section = &stream->sections[stream->section_count++];
-    **section = slot;
-    return STATUS_OK;
-}
-
-/* Replace the contents of a section; the arguments may be its old contents. */
-static enum status section_replace(const struct stream *stream, struct section *section,
-                                   enum element_type type, int64_t rows, int64_t cols, const char *attributes,
-                                   void *data, bool owned, struct error *error)
-{
-    char *copy = strdup(attributes);
-    if (copy == NULL) {
-        return fail_memory(error, section->name);
-    }
-    if (section->data != data) {
-        section_give_back(stream, section, true);
-        free(section->owned ? section->data : NULL);
-    }
-    free(section->attributes);
-    section->type = type;
-    section->rows = rows;
-    section->cols = cols;
-    section->attributes = copy;
-    section->data = data;
-    section->owned = owned;
+    section_free(slot);
+    *slot = *section;
+    *section = (struct section){0};
     return STATUS_OK;
 }
 
 enum status stream_put(struct stream *stream, const char *name, enum element_type type, int64_t rows,
                        int64_t cols, const char *attributes, void *data, bool owned, struct error *error)
 {
-    const char *listed = attributes != NULL ? attributes : "";
-    struct section *section = find(stream, name);
-    bool data_is_here = section != NULL && section->owned && section->data == data;
-    enum status status = section_validate(name, type, rows, cols, listed, error);
-    if (status == STATUS_OK && section != NULL) {
-        status = section_replace(stream, section, type, rows, cols, listed, data, owned, error);
-    } else if (status == STATUS_OK) {
-        status = stream_append(stream, name, type, rows, cols, listed, &section, error);
-        if (status == STATUS_OK) {
-            section->data = data;
-            section->owned = owned;
-        }
+    const struct section *old = stream_find(stream, name);
+    bool is_here = old != NULL && old->owned && old->data == data;
+    struct section section = {.name = strdup(name),
+                              .type = type,
+                              .rows = rows,
+                              .cols = cols,
+                              .attributes = strdup(attributes != NULL ? attributes : ""),
+                              .data = data,
+                              .owned = owned};
+    enum status status = section.name == NULL || section.attributes == NULL
+                             ? fail_memory(error, name)
+                             : section_validate(&section, error);
+    if (status == STATUS_OK) {
+        status = stream_add(stream, &section, error);
     }
-    if (status != STATUS_OK && owned && !data_is_here) {
-        free(data);
-    }
+    section.owned = section.owned && !is_here;
+    section_free(&section);
     return status;
 }
 
@@ -271,20 +252,15 @@ void stream_give_back(const struct stream *stream)
     }
 }
 
-static void remove_at(struct stream *stream, int64_t at)
-{
-    section_give_back(stream, &stream->sections[at], true);
-    section_free(&stream->sections[at]);
-    stream->section_count--;
-    memmove(&stream->sections[at], &stream->sections[at + 1],
-            (size_t)(stream->section_count - at) * sizeof *stream->sections);
-}
-
 void stream_remove(struct stream *stream, const char *name)
 {
-    const struct section *section = find(stream, name);
+    struct section *section = find(stream, name);
     if (section != NULL) {
-        remove_at(stream, section - stream->sections);
+        section_give_back(stream, section, true);
+        section_free(section);
+        memmove(section, section + 1,
+                (size_t)(stream->sections + --stream->section_count - section) * sizeof *section);
+        stream->sections[stream->section_count] = (struct section){0};
     }
 }
 

@@ -19,13 +19,14 @@ enum {
 };
 
 /* stream.c: bounds that hold for every section, whether read or put. */
-MUST_CHECK enum status section_validate(const char *name, enum element_type type, int64_t rows, int64_t cols,
-                                        const char *attributes, struct error *error);
+MUST_CHECK enum status section_validate(const struct section *section, struct error *error);
 
-/* stream.c: append an empty slot, or fail at the limit; `name` and `attributes` are copied. */
-MUST_CHECK enum status stream_append(struct stream *stream, const char *name, enum element_type type,
-                                     int64_t rows, int64_t cols, const char *attributes,
-                                     struct section **section, struct error *error);
+/* stream.c: take over a section, valid and in memory from malloc, in place of one of its name or as the last
+ * one. It becomes empty; on failure it stays the caller's. */
+MUST_CHECK enum status stream_add(struct stream *stream, struct section *section, struct error *error);
+
+/* stream.c: release what a section owns; it becomes empty. */
+void section_free(struct section *section);
 
 /* stream.c: release the pages of a section that is in the mapping: those of a file, which are read again when
  * needed, or `for_good` all. */

@@ -12,16 +12,6 @@
 
 /* ---- the header line of a section: "# NAME TYPE ROWS COLS [key=value ...]" ---- */
 
-/* It taken apart; the words lie in `copy`. */
-struct header {
-    char *copy;
-    const char *name;
-    enum element_type type;
-    int64_t rows, cols;
-    char *attributes; /* without enc= */
-    bool binary;
-};
-
 static char *next_word(char **at)
 {
     char *word = *at + strspn(*at, " \t");
@@ -31,64 +21,56 @@ static char *next_word(char **at)
     return word;
 }
 
-static enum status header_type(const char *word, struct header *header, struct error *error)
+static enum status header_type(const char *word, struct section *section, struct error *error)
 {
     for (enum element_type type = TYPE_I4; type <= TYPE_F8; type++) {
         if (strcmp(word, element_type_name(type)) == 0) {
-            header->type = type;
+            section->type = type;
             return STATUS_OK;
         }
     }
-    return fail(error, STATUS_INPUT, "%.40s: type '%.40s' is none of i4, i8, f4, f8", header->name, word);
+    return fail(error, STATUS_INPUT, "%.40s: type '%.40s' is none of i4, i8, f4, f8", section->name, word);
 }
 
-static enum status header_count(const char *word, const char *what, const struct header *header,
+static enum status header_count(const char *word, const char *what, const struct section *section,
                                 int64_t *count, struct error *error)
 {
     const char *end = word + strlen(word);
     if (word[0] == '+' || number_parse_integer(word, end, 0, INT64_MAX, count) != end) {
-        return fail(error, STATUS_INPUT, "%.40s: '%.40s' is not a number of %s", header->name, word, what);
+        return fail(error, STATUS_INPUT, "%.40s: '%.40s' is not a number of %s", section->name, word, what);
     }
     return STATUS_OK;
 }
 
-/* Gather key=value words but enc= into header->attributes, which has room for the whole line. */
-static enum status header_attributes(char *at, struct header *header, struct error *error)
+/* Gather key=value words but enc= into section->attributes, which has room for the whole line. */
+static enum status header_attributes(char *at, struct section *section, bool *binary, struct error *error)
 {
     bool encoded = false;
-    char *to = header->attributes;
+    char *to = section->attributes;
     for (char *word = next_word(&at); *word != '\0'; word = next_word(&at)) {
         if (strncmp(word, "enc=", 4) != 0) {
-            size_t length = strlen(word);
-            if (to > header->attributes) {
-                *to++ = ' ';
-            }
-            memcpy(to, word, length);
-            to += length;
+            to = stpcpy(stpcpy(to, to > section->attributes ? " " : ""), word);
             continue;
         }
         if (encoded || (strcmp(word, "enc=text") != 0 && strcmp(word, "enc=bin") != 0)) {
             return fail(error, STATUS_INPUT,
-                        "%.40s: '%.40s': a section has one encoding, enc=text or enc=bin", header->name,
+                        "%.40s: '%.40s': a section has one encoding, enc=text or enc=bin", section->name,
                         word);
         }
         encoded = true;
-        header->binary = strcmp(word, "enc=bin") == 0;
+        *binary = strcmp(word, "enc=bin") == 0;
     }
     *to = '\0';
     return STATUS_OK;
 }
 
-static void header_free(struct header *header)
+/* Parse and check a line without its newline; the section is empty before. */
+static enum status header_parse(const char *line, size_t length, struct section *section, bool *binary,
+                                struct error *error)
 {
-    FREE_ALL(header->copy, header->attributes);
-}
-
-/* Parse and check a line without its newline; to be freed, also on failure. */
-static enum status header_parse(const char *line, size_t length, struct header *header, struct error *error)
-{
-    *header = (struct header){.copy = strndup(line, length), .attributes = malloc(length + 1)};
-    if (header->copy == NULL || header->attributes == NULL) {
+    SCRATCH char *copy = strndup(line, length);
+    section->attributes = malloc(length + 1);
+    if (copy == NULL || section->attributes == NULL) {
         return fail_memory(error, "header");
     }
     if (length > 0 && line[length - 1] == '\r') {
@@ -96,16 +78,18 @@ static enum status header_parse(const char *line, size_t length, struct header *
     }
     if (!starts_with(line, length, "# ")) {
         return fail(error, STATUS_INPUT,
-                    "'%.40s' stands where a section header '# NAME TYPE ROWS COLS' should", header->copy);
+                    "'%.40s' stands where a section header '# NAME TYPE ROWS COLS' should", copy);
     }
-    char *at = header->copy + 2;
-    header->name = next_word(&at);
-    RETURN_IF_ERROR(header_type(next_word(&at), header, error));
-    RETURN_IF_ERROR(header_count(next_word(&at), "rows", header, &header->rows, error));
-    RETURN_IF_ERROR(header_count(next_word(&at), "columns", header, &header->cols, error));
-    RETURN_IF_ERROR(header_attributes(at, header, error));
-    return section_validate(header->name, header->type, header->rows, header->cols, header->attributes,
-                            error);
+    char *at = copy + 2;
+    section->name = strdup(next_word(&at));
+    if (section->name == NULL) {
+        return fail_memory(error, "header");
+    }
+    RETURN_IF_ERROR(header_type(next_word(&at), section, error));
+    RETURN_IF_ERROR(header_count(next_word(&at), "rows", section, &section->rows, error));
+    RETURN_IF_ERROR(header_count(next_word(&at), "columns", section, &section->cols, error));
+    RETURN_IF_ERROR(header_attributes(at, section, binary, error));
+    return section_validate(section, error);
 }
 
 /* ---- the stream ---- */
@@ -113,9 +97,8 @@ static enum status header_parse(const char *line, size_t length, struct header *
 struct reader {
     struct input input;
     struct stream *stream;
-    uLong crc;     /* of the bytes outside the payloads, so far */
-    bool binary;   /* some section is binary: the end line must carry the crc */
-    int64_t whole; /* sections read to their end */
+    uLong crc;   /* of the bytes outside the payloads, so far */
+    bool binary; /* some section is binary: the end line must carry the crc */
 };
 
 /* Read a line outside of payloads; it counts for the CRC of the end line. */
@@ -236,18 +219,17 @@ static enum status read_binary(struct reader *reader, struct section *section, u
 
 static enum status read_section(struct reader *reader, const char *line, size_t length, struct error *error)
 {
-    FREED_BY(header_free) struct header header = {0};
-    struct section *section;
+    FREED_BY(section_free) struct section section = {0};
     uLong crc = crc32_z(0, (const Bytef *)line, length + 1);
+    bool binary = false;
     frame_count(reader, line, length + 1);
-    RETURN_IF_ERROR(header_parse(line, length, &header, error));
-    if (stream_find(reader->stream, header.name) != NULL) {
-        return fail(error, STATUS_INPUT, "%s: this section stands twice in the stream", header.name);
+    RETURN_IF_ERROR(header_parse(line, length, &section, &binary, error));
+    if (stream_find(reader->stream, section.name) != NULL) {
+        return fail(error, STATUS_INPUT, "%s: this section stands twice in the stream", section.name);
     }
-    RETURN_IF_ERROR(stream_append(reader->stream, header.name, header.type, header.rows, header.cols,
-                                  header.attributes, &section, error));
-    return header.binary ? read_binary(reader, section, crc, error)
-                         : payload_read_text(&reader->input, section, error);
+    RETURN_IF_ERROR(binary ? read_binary(reader, &section, crc, error)
+                           : payload_read_text(&reader->input, &section, error));
+    return stream_add(reader->stream, &section, error);
 }
 
 /* Parse "# end COUNT" or "# end COUNT crc32=XXXXXXXX", with nothing behind it. */
@@ -316,7 +298,6 @@ static enum status read_lines(struct reader *reader, struct error *error)
         }
         if (!starts_with(line, length, "# @ ")) {
             RETURN_IF_ERROR(read_section(reader, line, length, error));
-            reader->whole = reader->stream->section_count;
         } else if (reader->stream->section_count > 0) {
             return fail(error, STATUS_INPUT, "a provenance line behind a section");
         } else {
@@ -327,13 +308,6 @@ static enum status read_lines(struct reader *reader, struct error *error)
         }
     }
     return STATUS_OK;
-}
-
-static void drop_torn(const struct reader *reader)
-{
-    while (reader->stream->section_count > reader->whole) {
-        stream_remove(reader->stream, reader->stream->sections[reader->stream->section_count - 1].name);
-    }
 }
 
 /* Read a stream. Unless `why` is NULL, a fault behind some complete sections is stored there and is not an
@@ -353,9 +327,8 @@ static enum status read_stream(struct stream *stream, int descriptor, const char
     TRY(input_open(&reader.input, stream, descriptor, error));
     TRY(read_lines(&reader, error));
 done:
-    if (status == STATUS_INPUT && why != NULL && reader.whole > 0) {
+    if (status == STATUS_INPUT && why != NULL && stream->section_count > 0) {
         *why = *error;
-        drop_torn(&reader);
         status = STATUS_OK;
     }
     uselocale(previous);

@@ -35,8 +35,6 @@ static enum status put_header(struct stream_writer *writer, const struct section
                               struct error *error)
 {
     size_t room = strlen(section->name) + strlen(section->attributes) + 128 + PAYLOAD_ALIGNMENT;
-    RETURN_IF_ERROR(section_validate(section->name, section->type, section->rows, section->cols,
-                                     section->attributes, error));
     NEW_SCRATCH(char, line, (int64_t)room, error);
     int printed = snprintf(line, room, "# %s %s %" PRId64 " %" PRId64 " enc=%s%s%s", section->name,
                            element_type_name(section->type), section->rows, section->cols,
