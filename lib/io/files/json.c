@@ -1,5 +1,6 @@
 #include "io/files/json.h"
 
+#include <ctype.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,7 +14,8 @@ void json_fail(struct json *json, const char *what)
     }
 }
 
-char json_peek(struct json *json)
+/* The next character that is no blank; NUL at the end and after a failure. */
+static char peek(struct json *json)
 {
     for (; json->status == STATUS_OK && *json->at != '\0' && strchr(" \t\r\n", *json->at) != NULL;
          json->at++) {
@@ -27,43 +29,9 @@ char json_peek(struct json *json)
 
 static bool take(struct json *json, char c)
 {
-    bool found = json_peek(json) == c && c != '\0';
+    bool found = peek(json) == c && c != '\0';
     json->at += found;
     return found;
-}
-
-static char closing(char bracket)
-{
-    if (bracket == '{') {
-        return '}';
-    }
-    return ']';
-}
-
-bool json_open(struct json *json, char bracket)
-{
-    if (!take(json, bracket) || ++json->depth > DEEPEST) {
-        json_fail(json, bracket == '{' ? "an object, {...}, is expected" : "an array, [...], is expected");
-        return false;
-    }
-    if (take(json, closing(bracket))) {
-        json->depth--;
-        return false;
-    }
-    return json->status == STATUS_OK;
-}
-
-bool json_next(struct json *json, char bracket)
-{
-    if (take(json, bracket)) {
-        json->depth--;
-        return false;
-    }
-    if (!take(json, ',')) {
-        json_fail(json, *json->at == '\0' ? "cut short: the file ends within a value"
-                                          : "',' or a closing bracket is expected");
-    }
-    return json->status == STATUS_OK;
 }
 
 /* Append a code point in UTF-8; what is none, or a NUL, is '?'. */
@@ -118,7 +86,7 @@ static bool take_escape(struct json *json, char **to)
     return code >= 0;
 }
 
-char *json_string(struct json *json)
+static char *take_string(struct json *json)
 {
     if (!take(json, '"')) {
         json_fail(json, "a string is expected");
@@ -138,59 +106,83 @@ char *json_string(struct json *json)
     return text;
 }
 
-char *json_key(struct json *json)
-{
-    char *text = json_string(json);
-    if (!take(json, ':')) {
-        json_fail(json, "':' is expected behind a key");
-    }
-    return text;
-}
-
-double json_number(struct json *json)
+static double take_number(struct json *json)
 {
     char word[64] = "", *end;
-    json_peek(json);
-    size_t length = json->status == STATUS_OK ? strspn(json->at, "0123456789+-.eE") : 0;
+    size_t length = strspn(json->at, "0123456789+-.eE");
     memcpy(word, json->at, length < sizeof word ? length : 0);
     double value = strtod(word, &end);
     if (length == 0 || *end != '\0' || !isfinite(value)) {
         json_fail(json, "a finite number is expected");
-        return 0;
     }
     json->at += length;
     return value;
 }
 
-void json_skip(struct json *json)
+static char *take_word(struct json *json)
 {
-    char c = json_peek(json);
-    if (c == '{' || c == '[') {
-        for (bool more = json_open(json, c); more; more = json_next(json, closing(c))) {
-            if (c == '{') {
-                (void)json_key(json);
-            }
-            json_skip(json);
+    static char words[][6] = {"true", "false", "null"};
+    for (int i = 0; i < 3; i++) {
+        size_t length = strlen(words[i]);
+        if (strncmp(json->at, words[i], length) == 0 && !isalnum((unsigned char)json->at[length])) {
+            json->at += length;
+            return words[i];
         }
-    } else if (c == '"') {
-        (void)json_string(json);
-    } else if (c >= 'a' && c <= 'z') {
-        size_t length = strspn(json->at, "abcdefghijklmnopqrstuvwxyz");
-        bool known =
-            (length == 4 && (strncmp(json->at, "true", 4) == 0 || strncmp(json->at, "null", 4) == 0)) ||
-            (length == 5 && strncmp(json->at, "false", 5) == 0);
-        json->at += length;
-        if (!known) {
-            json_fail(json, "a word that is neither true, false nor null");
-        }
-    } else {
-        (void)json_number(json);
+    }
+    json_fail(json, "a word that is neither true, false nor null");
+    return words[2];
+}
+
+static void give(struct json *json, char *text, double number)
+{
+    if (json->status == STATUS_OK) {
+        json->take(json, text, number);
     }
 }
 
-void json_end(struct json *json)
+static void read_value(struct json *json, int depth)
 {
-    if (json_peek(json) != '\0') {
+    char c = peek(json), *text;
+    size_t length = strlen(json->path);
+    if (c == '"') {
+        text = take_string(json);
+        give(json, text, NAN);
+    } else if (isalpha((unsigned char)c)) {
+        text = take_word(json);
+        give(json, text, NAN);
+    } else if (c != '{' && c != '[') {
+        double number = take_number(json);
+        give(json, NULL, number);
+    } else if (depth == DEEPEST) {
+        json_fail(json, "values within more than 64 others");
+    } else {
+        json->at++;
+        for (bool more = !take(json, c == '{' ? '}' : ']'); more && json->status == STATUS_OK;) {
+            if (c == '{') {
+                text_append(json->path, sizeof json->path, "%s%s", length > 0 ? "." : "", take_string(json));
+            }
+            if (c == '{' && !take(json, ':')) {
+                json_fail(json, "':' is expected behind a key");
+            }
+            read_value(json, depth + 1);
+            json->path[length] = '\0';
+            more = !take(json, c == '{' ? '}' : ']');
+            if (more && !take(json, ',')) {
+                json_fail(json, *json->at == '\0' ? "cut short: the file ends within a value"
+                                                  : "',' or a closing bracket is expected");
+            }
+        }
+        if (c == '{') {
+            give(json, NULL, NAN);
+        }
+    }
+}
+
+void json_read(struct json *json)
+{
+    json->path[0] = '\0';
+    read_value(json, 0);
+    if (peek(json) != '\0') {
         json_fail(json, "more behind the value");
     }
 }

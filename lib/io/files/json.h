@@ -1,35 +1,24 @@
-/* JSON (RFC 8259), scanned value by value: what is not asked for is skipped. */
+/* JSON (RFC 8259), passed over value by value. */
 #pragma once
 
 #include "base/status.h"
 
-/* A text that is being scanned. The first failure stays: then nothing more is found, and every loop ends. */
+/* A text that is being read. After the first failure nothing more is given. */
 struct json {
     char *at; /* ends with a NUL; strings are decoded in place */
     enum status status;
     struct error *error;
-    int depth;
-    int64_t line; /* of `at`, from 1 */
+    int64_t line;   /* of `at`, from 1 */
+    char path[256]; /* of the value: "markups.position", the keys of the objects that hold it; cut when longer
+                     */
+    /* Called with each string, or true, false or null, as UTF-8 that stays where it is; with each finite
+     * number (text NULL); and at the end of each object (text NULL, NAN). */
+    void (*take)(struct json *json, char *text, double number);
+    void *context;
 };
 
-/* The items of an object or array: for (bool more = json_open(json, '{'); more; more = json_next(json, '}')),
- * in an object with json_key in front of each value. */
-bool json_open(struct json *json, char bracket);
-bool json_next(struct json *json, char bracket);
-
-/* Take a string, as UTF-8, which stays where it is; the key of an item with the colon behind it; a number. */
-char *json_string(struct json *json);
-char *json_key(struct json *json);
-double json_number(struct json *json);
-
-/* The next character that is no blank; NUL at the end and after a failure. */
-char json_peek(struct json *json);
-
-/* Pass over a value. */
-void json_skip(struct json *json);
-
-/* Nothing but blanks is left. */
-void json_end(struct json *json);
+/* Read the text, which is one value. */
+void json_read(struct json *json);
 
 /* Fail with STATUS_INPUT and a message "LINE: WHAT", unless it has failed before. */
 void json_fail(struct json *json, const char *what);

@@ -6,6 +6,7 @@
 #include "io/files/textfile.h"
 
 #include <float.h>
+#include <math.h>
 #include <string.h>
 
 static const size_t size_limit = (size_t)1 << 28;
@@ -24,106 +25,82 @@ bool landmarks_named(const char *path)
 
 /* ---- markups ---- */
 
-static void read_point(struct landmarks *landmarks, struct json *json)
+/* A markup, of which the last point is being read. */
+struct markup {
+    struct table *table;
+    char *empty;    /* label */
+    int64_t first;  /* row */
+    double sign;    /* of x and y, to RAS */
+    bool has_units; /* said: of a code of UCUM, the unit comes first */
+    char *label;
+    double x[3];
+    int count; /* of its coordinates */
+    bool is_undefined;
+    int64_t line; /* of its position */
+};
+
+static void end_point(struct markup *markup, struct json *json)
 {
-    char *label = landmarks->empty;
-    const char *status = "defined";
-    double x[3] = {0};
-    int count = 0;
-    int64_t line = json->line;
-    for (bool more = json_open(json, '{'); more; more = json_next(json, '}')) {
-        const char *key = json_key(json);
-        if (strcmp(key, "label") == 0) {
-            label = json_string(json);
-        } else if (strcmp(key, "positionStatus") == 0) {
-            status = json_string(json);
-        } else if (strcmp(key, "position") == 0) {
-            for (bool next = json_open(json, '['); next; next = json_next(json, ']')) {
-                double value = json_number(json);
-                x[count < 3 ? count : 2] = value;
-                count++;
-            }
-        } else {
-            json_skip(json);
-        }
-    }
-    if (count != 3 || strcmp(status, "defined") != 0) {
+    if (markup->count != 3 || markup->is_undefined) {
         json_fail(json, "a control point without a position of three numbers: place it, or leave it out");
-    }
-    if (json->status == STATUS_OK) {
-        json->status = table_append(landmarks->table, x, line, label, json->error);
-    }
-}
-
-/* The axes: "LPS" or "RAS". */
-static double read_system(struct json *json)
-{
-    const char *name = json_string(json);
-    if (strcmp(name, "LPS") != 0 && strcmp(name, "RAS") != 0) {
-        json_fail(json, "coordinateSystem is neither LPS nor RAS");
-    }
-    return name[0] == 'L' ? -1 : 1;
-}
-
-static void read_units(struct json *json)
-{
-    const char *name = "";
-    if (json_peek(json) == '[') { /* a code of UCUM, the unit first */
-        for (bool first = true, more = json_open(json, '['); more;
-             more = json_next(json, ']'), first = false) {
-            if (first) {
-                name = json_string(json);
-            } else {
-                json_skip(json);
-            }
-        }
     } else {
-        name = json_string(json);
+        json->status = table_append(markup->table, markup->x, markup->line,
+                                    markup->label != NULL ? markup->label : markup->empty, json->error);
     }
-    if (strcmp(name, "mm") != 0) {
-        json_fail(json, "coordinateUnits is not mm");
+    markup->label = NULL;
+    markup->count = 0;
+    markup->is_undefined = false;
+}
+
+static void end_markup(struct markup *markup)
+{
+    for (; markup->first < markup->table->rows; markup->first++) {
+        markup->table->values[3 * markup->first] *= markup->sign;
+        markup->table->values[3 * markup->first + 1] *= markup->sign;
+    }
+    markup->sign = -1; /* LPS if nothing is said */
+    markup->has_units = false;
+}
+
+static bool is_text(const char *text, const char *wanted)
+{
+    return text != NULL && strcmp(text, wanted) == 0;
+}
+
+static void take_value(struct json *json, char *text, double number)
+{
+    struct markup *markup = json->context;
+    bool ends = text == NULL && isnan(number);
+    if (is_text(json->path, "markups") && ends) {
+        end_markup(markup);
+    } else if (is_text(json->path, "markups.coordinateSystem")) {
+        markup->sign = is_text(text, "RAS") ? 1 : -1;
+        if (markup->sign < 0 && !is_text(text, "LPS")) {
+            json_fail(json, "coordinateSystem is neither LPS nor RAS");
+        }
+    } else if (is_text(json->path, "markups.coordinateUnits")) {
+        if (!markup->has_units && !is_text(text, "mm")) {
+            json_fail(json, "coordinateUnits is not mm");
+        }
+        markup->has_units = true;
+    } else if (is_text(json->path, "markups.controlPoints") && ends) {
+        end_point(markup, json);
+    } else if (is_text(json->path, "markups.controlPoints.label")) {
+        markup->label = text;
+    } else if (is_text(json->path, "markups.controlPoints.positionStatus")) {
+        markup->is_undefined = !is_text(text, "defined");
+    } else if (is_text(json->path, "markups.controlPoints.position") && text == NULL && !ends) {
+        markup->x[markup->count < 3 ? markup->count : 2] = number;
+        markup->count++;
+        markup->line = json->line;
     }
 }
 
-static void read_markup(struct landmarks *landmarks, struct json *json)
+static enum status read_markups(const struct landmarks *landmarks, char *text, struct error *error)
 {
-    struct table *table = landmarks->table;
-    int64_t first = table->rows;
-    double sign = -1; /* LPS if nothing is said */
-    for (bool more = json_open(json, '{'); more; more = json_next(json, '}')) {
-        const char *key = json_key(json);
-        if (strcmp(key, "coordinateSystem") == 0) {
-            sign = read_system(json);
-        } else if (strcmp(key, "coordinateUnits") == 0) {
-            read_units(json);
-        } else if (strcmp(key, "controlPoints") == 0) {
-            for (bool next = json_open(json, '['); next; next = json_next(json, ']')) {
-                read_point(landmarks, json);
-            }
-        } else {
-            json_skip(json);
-        }
-    }
-    for (int64_t i = first; i < table->rows; i++) {
-        table->values[3 * i] *= sign;
-        table->values[3 * i + 1] *= sign;
-    }
-}
-
-static enum status read_markups(struct landmarks *landmarks, char *text, struct error *error)
-{
-    struct json json = {.at = text, .error = error, .line = 1};
-    for (bool more = json_open(&json, '{'); more; more = json_next(&json, '}')) {
-        const char *key = json_key(&json);
-        if (strcmp(key, "markups") != 0) {
-            json_skip(&json);
-            continue;
-        }
-        for (bool next = json_open(&json, '['); next; next = json_next(&json, ']')) {
-            read_markup(landmarks, &json);
-        }
-    }
-    json_end(&json);
+    struct markup markup = {.table = landmarks->table, .empty = landmarks->empty, .sign = -1};
+    struct json json = {.at = text, .error = error, .line = 1, .take = take_value, .context = &markup};
+    json_read(&json);
     return json.status;
 }
 
