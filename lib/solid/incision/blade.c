@@ -1,13 +1,12 @@
 #include "solid/incision/blade.h"
 
 #include "approx/cells/crossing.h"
-#include "approx/cells/parts.h"
 #include "base/box.h"
-#include "base/lists.h"
 #include "base/memory.h"
 #include "base/round_off.h"
 #include "base/sets.h"
 #include "base/vector.h"
+#include "solid/rigid/rigid_private.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -48,50 +47,22 @@ static enum status check_crossings(int dim, int64_t count, const double *corners
     return STATUS_OK;
 }
 
-/* Join the facets of curves of which one ends where one begins, and no other does either. Where more meet, a
- * sheet with a corner would be cut off within a cell, and the others end beside it. */
-static enum status join_curves(int64_t count, const double *corners, int32_t *first, struct error *error)
-{
-    struct box all = box_of(2, count * 2, corners);
-    double near = COARSE_ROUND_OFF * box_diagonal(&all);
-    NEW_SCRATCH(struct placed, placed, count * 2, error); /* along a direction in which few ends coincide */
-    for (int64_t i = 0; i < count * 2; i++) {
-        placed[i] = (struct placed){0.5377 * corners[i * 2] + 0.6180 * corners[i * 2 + 1], i};
-    }
-    qsort(placed, (size_t)(count * 2), sizeof *placed, compare_placed);
-    for (int64_t i = 0, low = 0; i < count * 2; i++) {
-        int64_t end = placed[i].item, other = -1, meet = 0;
-        for (; placed[i].place - placed[low].place > near; low++) {
-        }
-        for (int64_t k = low; k < count * 2 && placed[k].place - placed[i].place <= near; k++) {
-            if (k != i && vector_distance(2, corners + end * 2, corners + placed[k].item * 2) <= near) {
-                other = placed[k].item;
-                meet++;
-            }
-        }
-        if (meet == 1 && other % 2 != end % 2) {
-            set_join(first, (int32_t)(end / 2), (int32_t)(other / 2));
-        }
-    }
-    return STATUS_OK;
-}
-
-/* first[count]: facets of one sheet have the same first member. */
+/* first[count]: facets of one sheet have the same first member. They are joined where one ends and one
+ * begins, and no other does either: where more meet, a sheet with a corner would be cut off within a cell,
+ * and the others end beside it. */
 static enum status find_sheets(int dim, int64_t count, const double *corners, int32_t *first,
                                struct error *error)
 {
     FREED_BY(rigid_free) struct rigid_surface whole = {0};
+    SCRATCH struct ridge *ridges = NULL;
     for (int64_t f = 0; f < count; f++) {
         first[f] = (int32_t)f;
     }
-    if (dim == 2) {
-        return join_curves(count, corners, first, error);
-    }
-    RETURN_IF_ERROR(rigid_build(dim, count, corners, false, &whole, error));
-    NEW_SCRATCH(struct ridge, ridges, count * 3, error);
-    ridges_list(3, count, whole.facet, ridges);
-    for (int64_t i = 0, end; i < count * 3; i = end) {
-        end = ridges_end(count * 3, ridges, i);
+    RETURN_IF_ERROR(dim == 2 ? rigid_weld(dim, count, corners, &whole, error)
+                             : rigid_build(dim, count, corners, false, &whole, error));
+    RETURN_IF_ERROR(rigid_list_ridges(&whole, &ridges, error));
+    for (int64_t i = 0, end; i < count * dim; i = end) {
+        end = ridges_end(count * dim, ridges, i);
         if (end - i == 2 && ridges[i].upward != ridges[i + 1].upward) {
             set_join(first, ridges[i].facet, ridges[i + 1].facet);
         }

@@ -84,8 +84,8 @@ static enum status add_face(struct crossings *list, int dim, const double *exten
     return STATUS_OK;
 }
 
-static enum status list_pairs(const struct cut *cut, enum level level, const struct near_faces *faces,
-                              struct crossings *list, struct error *error)
+static enum status list_pairs(const struct cut *cut, enum level level, struct crossings *list,
+                              struct error *error)
 {
     const struct division *body = cut->body;
     const double *value = cut->value[level];
@@ -98,10 +98,10 @@ static enum status list_pairs(const struct cut *cut, enum level level, const str
             }
         }
     }
-    for (int64_t f = 0, end; f < faces->count && level == LEVEL_EXTENT; f = end) {
-        end = keyed_end(faces->count, faces->keyed, f);
-        if (end - f == 2 && cut_parts(cut, faces, f)) {
-            RETURN_IF_ERROR(add_face(list, body->dim, value, faces->keyed[f].key, error));
+    for (int64_t f = 0, end; f < cut->face_count && level == LEVEL_EXTENT; f = end) {
+        end = keyed_end(cut->face_count, cut->face, f);
+        if (end - f == 2 && cut_parts(cut, f)) {
+            RETURN_IF_ERROR(add_face(list, body->dim, value, cut->face[f].key, error));
         }
     }
     qsort(list->item, (size_t)list->count, sizeof *list->item, split_compare);
@@ -173,13 +173,13 @@ static void use_cell(const struct cut *cut, const struct crossings *list, const 
     }
 }
 
-enum status cut_crossings(const struct cut *cut, enum level level, const struct near_faces *faces,
-                          struct crossings *list, struct error *error)
+enum status cut_crossings(const struct cut *cut, enum level level, struct crossings *list,
+                          struct error *error)
 {
     int64_t used = 0;
     int corners = cut->body->dim + 1;
     list->count = 0;
-    RETURN_IF_ERROR(list_pairs(cut, level, faces, list, error));
+    RETURN_IF_ERROR(list_pairs(cut, level, list, error));
     find_roots(cut, level, list);
     for (int64_t c = 0; c < cut->body->cell_count && level == LEVEL_HEIGHT; c++) {
         use_cell(cut, list, cut->body->node + c * corners);

@@ -13,7 +13,7 @@ static const double along_face = 0.87, near_face = 0.4;
 
 void cut_free(struct cut *cut)
 {
-    FREE_ALL(cut->value[0], cut->value[1], cut->shortest, cut->longest, cut->face_normal);
+    FREE_ALL(cut->value[0], cut->value[1], cut->shortest, cut->longest, cut->face_normal, cut->face);
 }
 
 /* The faces of a cut that is continued. */
@@ -89,14 +89,10 @@ static void evaluate_node(struct cut *cut, int64_t n)
 enum status cut_evaluate(struct cut *cut, struct error *error)
 {
     int64_t needed = cut->body->node_count;
-    if (needed > cut->room) {
-        int64_t room = needed + needed / 4;
-        RETURN_IF_ERROR(RESIZE_ARRAY(&cut->value[0], room, error));
-        RETURN_IF_ERROR(RESIZE_ARRAY(&cut->value[1], room, error));
-        RETURN_IF_ERROR(RESIZE_ARRAY(&cut->shortest, room, error));
-        RETURN_IF_ERROR(RESIZE_ARRAY(&cut->longest, room, error));
-        cut->room = room;
-    }
+    RETURN_IF_ERROR(RESIZE_ARRAY(&cut->value[0], needed, error));
+    RETURN_IF_ERROR(RESIZE_ARRAY(&cut->value[1], needed, error));
+    RETURN_IF_ERROR(RESIZE_ARRAY(&cut->shortest, needed, error));
+    RETURN_IF_ERROR(RESIZE_ARRAY(&cut->longest, needed, error));
     measure_edges(cut);
     for (; cut->known < needed; cut->known++) {
         evaluate_node(cut, cut->known);
@@ -140,58 +136,51 @@ int cut_side(const struct cut *cut, int64_t cell)
     return sheet_at(cut->sheet, middle, 2.0 * reach, &place) && place.height < 0 ? -1 : 1;
 }
 
-enum status cut_faces(const struct cut *cut, struct near_faces *faces, struct error *error)
+enum status cut_faces(struct cut *cut, struct error *error)
 {
     const struct division *body = cut->body;
     int corners = body->dim + 1;
     int64_t cells = 0;
-    near_faces_free(faces);
+    cut->face_count = 0;
     for (int64_t c = 0; c < body->cell_count; c++) {
         cells += cut_is_near(cut, c);
     }
-    RETURN_IF_ERROR(NEW_ARRAY(&faces->keyed, cells * corners, error));
+    RETURN_IF_ERROR(RESIZE_ARRAY(&cut->face, cells * corners, error));
     for (int64_t c = 0; c < body->cell_count; c++) {
         for (int k = 0; k < corners && cut_is_near(cut, c); k++) {
             int32_t face[3];
             simplex_face(body->dim, body->node + c * corners, k, face);
-            face_key(body->dim, face, faces->keyed[faces->count].key);
-            faces->keyed[faces->count++].item = c * corners + k;
+            face_key(body->dim, face, cut->face[cut->face_count].key);
+            cut->face[cut->face_count++].item = c * corners + k;
         }
     }
-    keyed_sort(faces->count, faces->keyed);
+    keyed_sort(cut->face_count, cut->face);
     return STATUS_OK;
 }
 
-void near_faces_free(struct near_faces *faces)
-{
-    free(faces->keyed);
-    *faces = (struct near_faces){0};
-}
-
-bool cut_parts(const struct cut *cut, const struct near_faces *faces, int64_t i)
+bool cut_parts(const struct cut *cut, int64_t i)
 {
     int corners = cut->body->dim + 1;
     for (int k = 0; k < cut->body->dim; k++) {
-        if (cut->value[LEVEL_HEIGHT][faces->keyed[i].key[k]] != 0.0) {
+        if (cut->value[LEVEL_HEIGHT][cut->face[i].key[k]] != 0.0) {
             return false;
         }
     }
-    return cut_side(cut, faces->keyed[i].item / corners) * cut_side(cut, faces->keyed[i + 1].item / corners) <
-           0;
+    return cut_side(cut, cut->face[i].item / corners) * cut_side(cut, cut->face[i + 1].item / corners) < 0;
 }
 
 /* ---- the cut ---- */
 
 /* Split the edges where the level is 0; the nodes there are on it. */
-static enum status divide_at(struct cut *cut, enum level level, struct near_faces *faces, struct error *error)
+static enum status divide_at(struct cut *cut, enum level level, struct error *error)
 {
     FREED_BY(crossings_free) struct crossings crossings = {0};
     struct division *body = cut->body;
     int64_t first = body->node_count;
-    RETURN_IF_ERROR(cut_faces(cut, faces, error));
-    RETURN_IF_ERROR(cut_crossings(cut, level, faces, &crossings, error));
-    RETURN_IF_ERROR(cut_snap(cut, level, faces, &crossings, error));
-    RETURN_IF_ERROR(cut_crossings(cut, level, faces, &crossings, error));
+    RETURN_IF_ERROR(cut_faces(cut, error));
+    RETURN_IF_ERROR(cut_crossings(cut, level, &crossings, error));
+    RETURN_IF_ERROR(cut_snap(cut, level, &crossings, error));
+    RETURN_IF_ERROR(cut_crossings(cut, level, &crossings, error));
     NEW_SCRATCH(struct split, split, crossings.count, error);
     for (int64_t i = 0; i < crossings.count; i++) {
         split[i] = crossings.item[i].split;
@@ -204,17 +193,16 @@ static enum status divide_at(struct cut *cut, enum level level, struct near_face
             cut->value[level][n] = crossings.item[n - first].extent;
         }
     }
-    return cut_faces(cut, faces, error);
+    return cut_faces(cut, error);
 }
 
 enum status incision_cut(struct division *body, const struct sheet *sheet, int32_t front, int32_t back,
                          int64_t *opened, struct error *error)
 {
     FREED_BY(cut_free) struct cut cut = {.body = body, .sheet = sheet};
-    FREED_BY(near_faces_free) struct near_faces faces = {0};
     RETURN_IF_ERROR(find_lips(&cut, front, back, error));
     RETURN_IF_ERROR(cut_evaluate(&cut, error));
-    RETURN_IF_ERROR(divide_at(&cut, LEVEL_HEIGHT, &faces, error));
-    RETURN_IF_ERROR(divide_at(&cut, LEVEL_EXTENT, &faces, error));
-    return cut_open(&cut, &faces, front, back, opened, error);
+    RETURN_IF_ERROR(divide_at(&cut, LEVEL_HEIGHT, error));
+    RETURN_IF_ERROR(divide_at(&cut, LEVEL_EXTENT, error));
+    return cut_open(&cut, front, back, opened, error);
 }

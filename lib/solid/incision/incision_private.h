@@ -12,21 +12,16 @@
 /* What edges are split at. */
 enum level { LEVEL_HEIGHT, LEVEL_EXTENT };
 
-/* Of nodes: arrays of `room`. */
 struct cut {
     struct division *body;
     const struct sheet *sheet;
-    int64_t room, known, old; /* the first `known` nodes have values */
-    double *value[2]; /* by level, m; 0: on it; heights NAN: far; extents only of nodes on the sheet */
+    int64_t known, old; /* the first `known` nodes have values */
+    double *value[2];   /* by level, m; 0: on it; heights NAN: far; extents only of nodes on the sheet */
     double *shortest, *longest; /* edges at the node, m */
     double *face_normal; /* old nodes * dim: mean normal of the front face, reversed of the back, of a cut
                     that is continued */
-};
-
-/* The faces of cells with a node that is near, by their nodes; item = cell * (dim + 1) + vertex opposite. */
-struct near_faces {
-    int64_t count;
-    struct keyed *keyed;
+    int64_t face_count;
+    struct keyed *face; /* of cells with a node that is near; item = cell * (dim + 1) + vertex opposite */
 };
 
 /* An edge between values of different signs. */
@@ -54,17 +49,17 @@ bool cut_is_near(const struct cut *cut, int64_t cell);
 /* On which side of the sheet a cell is: 1 in front, -1 behind, 0: both, or far. */
 int cut_side(const struct cut *cut, int64_t cell);
 
-MUST_CHECK enum status cut_faces(const struct cut *cut, struct near_faces *faces, struct error *error);
-void near_faces_free(struct near_faces *faces);
+/* List the faces near the sheet. */
+MUST_CHECK enum status cut_faces(struct cut *cut, struct error *error);
 
 /* Whether face i of two, with the next one, parts a cell in front from one behind, all its nodes on the
  * sheet. */
-bool cut_parts(const struct cut *cut, const struct near_faces *faces, int64_t i);
+bool cut_parts(const struct cut *cut, int64_t i);
 
 /* The edges to be split: with different signs of the height, in cells that the sheet meets; or of the extent,
  * of faces on the sheet; and what is within the border between nodes on it. */
-MUST_CHECK enum status cut_crossings(const struct cut *cut, enum level level, const struct near_faces *faces,
-                                     struct crossings *crossings, struct error *error);
+MUST_CHECK enum status cut_crossings(const struct cut *cut, enum level level, struct crossings *crossings,
+                                     struct error *error);
 void crossings_free(struct crossings *crossings);
 
 /* Where the value on an edge is 0. False: nowhere, where it jumps. */
@@ -72,9 +67,9 @@ bool cut_root(const struct cut *cut, enum level level, const int32_t node[2], do
               struct sheet_place *place);
 
 /* Move nodes near the zero of the level onto it. */
-MUST_CHECK enum status cut_snap(struct cut *cut, enum level level, const struct near_faces *faces,
-                                const struct crossings *crossings, struct error *error);
+MUST_CHECK enum status cut_snap(struct cut *cut, enum level level, const struct crossings *crossings,
+                                struct error *error);
 
 /* Open the faces within the border. */
-MUST_CHECK enum status cut_open(struct cut *cut, const struct near_faces *faces, int32_t front, int32_t back,
-                                int64_t *opened, struct error *error);
+MUST_CHECK enum status cut_open(struct cut *cut, int32_t front, int32_t back, int64_t *opened,
+                                struct error *error);

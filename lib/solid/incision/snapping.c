@@ -61,8 +61,7 @@ static uint64_t label_of_groups(const struct division *body, int64_t count, cons
     return label;
 }
 
-static enum status surfaces_build(const struct cut *cut, const struct near_faces *faces,
-                                  struct surfaces *surfaces, struct error *error)
+static enum status surfaces_build(const struct cut *cut, struct surfaces *surfaces, struct error *error)
 {
     const struct division *body = cut->body;
     int dim = body->dim;
@@ -72,12 +71,12 @@ static enum status surfaces_build(const struct cut *cut, const struct near_faces
         facets[f].item = f;
     }
     keyed_sort(body->facet_count, facets);
-    RETURN_IF_ERROR(NEW_ARRAY(&surfaces->node, faces->count * dim, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&surfaces->label, faces->count, error));
-    for (int64_t i = 0, end; i < faces->count; i = end) {
-        const struct keyed *face = &faces->keyed[i];
+    RETURN_IF_ERROR(NEW_ARRAY(&surfaces->node, cut->face_count * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&surfaces->label, cut->face_count, error));
+    for (int64_t i = 0, end; i < cut->face_count; i = end) {
+        const struct keyed *face = &cut->face[i];
         int32_t one = body->of_cell[face->item / (dim + 1)], other = one;
-        end = keyed_end(faces->count, faces->keyed, i);
+        end = keyed_end(cut->face_count, cut->face, i);
         if (end - i == 2) {
             other = body->of_cell[face[1].item / (dim + 1)];
         }
@@ -261,8 +260,8 @@ static void snapping_free(struct snapping *snapping)
     FREE_ALL(snapping->cell_ptr, snapping->cell_idx);
 }
 
-enum status cut_snap(struct cut *cut, enum level level, const struct near_faces *faces,
-                     const struct crossings *crossings, struct error *error)
+enum status cut_snap(struct cut *cut, enum level level, const struct crossings *crossings,
+                     struct error *error)
 {
     FREED_BY(snapping_free) struct snapping snapping = {.cut = cut, .level = level};
     SCRATCH int64_t *ptr = NULL;
@@ -272,7 +271,7 @@ enum status cut_snap(struct cut *cut, enum level level, const struct near_faces 
     for (int64_t i = 0; i < crossings->count * 2; i++) {
         end[i] = crossings->item[i / 2].split.node[i % 2];
     }
-    RETURN_IF_ERROR(surfaces_build(cut, faces, &snapping.surfaces, error));
+    RETURN_IF_ERROR(surfaces_build(cut, &snapping.surfaces, error));
     RETURN_IF_ERROR(lists_by_row(body->cell_count, body->dim + 1, body->node, body->node_count,
                                  &snapping.cell_ptr, &snapping.cell_idx, error));
     RETURN_IF_ERROR(lists_by_row(crossings->count, 2, end, body->node_count, &ptr, &idx, error));

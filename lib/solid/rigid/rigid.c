@@ -100,8 +100,8 @@ static enum status make_normals(struct rigid_surface *surface, bool flip, struct
     return STATUS_OK;
 }
 
-enum status rigid_build(int dim, int64_t facet_count, const double *corners, bool flip,
-                        struct rigid_surface *surface, struct error *error)
+enum status rigid_weld(int dim, int64_t facet_count, const double *corners, struct rigid_surface *surface,
+                       struct error *error)
 {
     *surface = (struct rigid_surface){.dim = dim, .facet_count = facet_count};
     if (facet_count < 1 || facet_count > INT32_MAX / 3) {
@@ -111,7 +111,13 @@ enum status rigid_build(int dim, int64_t facet_count, const double *corners, boo
     RETURN_IF_ERROR(check_corners(surface, corners, error));
     struct box box = box_of(dim, facet_count * dim, corners);
     surface->extent = box_diagonal(&box);
-    RETURN_IF_ERROR(number_vertices(surface, corners, error));
+    return number_vertices(surface, corners, error);
+}
+
+enum status rigid_build(int dim, int64_t facet_count, const double *corners, bool flip,
+                        struct rigid_surface *surface, struct error *error)
+{
+    RETURN_IF_ERROR(rigid_weld(dim, facet_count, corners, surface, error));
     RETURN_IF_ERROR(make_normals(surface, flip, error));
     RETURN_IF_ERROR(rigid_make_pseudo_normals(surface, error));
     return rigid_grow_tree(surface, error);

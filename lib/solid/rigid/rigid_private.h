@@ -8,6 +8,10 @@
 
 #include <math.h>
 
+/* Begin to build: vertices and facets alone. */
+MUST_CHECK enum status rigid_weld(int dim, int64_t facet_count, const double *corners,
+                                  struct rigid_surface *surface, struct error *error);
+
 /* Set vertex_normal, edge_normal, turn and the rims from facets and normals. STATUS_INPUT where two facets
  * disagree on the side. */
 MUST_CHECK enum status rigid_make_pseudo_normals(struct rigid_surface *surface, struct error *error);
