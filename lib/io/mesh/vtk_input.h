@@ -54,17 +54,20 @@ void vtk_fill_binary(struct msh_reader *r, struct vtk_array *array, const struct
                      const char *bytes);
 void vtk_fill_text(struct msh_reader *r, struct vtk_array *array, const char **at, const char *end);
 
-/* Where the bytes of an array of a VTU file begin, and how they lie there. */
+/* Where the bytes of an array of a VTU file are, and how they lie there. */
 struct vtu_source {
     const char *at, *end;
     bool base64, swap, compressed;
-    int word;      /* bytes of each number of the head: 4 or 8 */
-    int64_t most;  /* bytes that there may be, unpacked */
-    int64_t taken; /* bytes, out of base64, that the array took */
+    int word;     /* bytes of each number of the head: 4 or 8 */
+    int64_t most; /* bytes that there may be, unpacked */
 };
 
-/* The bytes of an array, uncompressed and out of base64, to be freed; NULL after a failure. (vtu_data.c) */
-char *vtu_bytes(struct msh_reader *r, struct vtu_source *source, int64_t *size);
+/* The bytes of an array, uncompressed and out of base64; to be freed also on failure. (vtu_data.c) */
+struct vtu_bytes {
+    char *bytes;
+    int64_t size;
+};
+void vtu_read_bytes(struct msh_reader *r, const struct vtu_source *source, struct vtu_bytes *data);
 
 /* Group elements by the array of the regions, add those of sets: all cells are there. (vtk_groups.c) */
 void vtk_add_groups(struct vtk_input *v);

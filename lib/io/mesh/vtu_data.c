@@ -8,70 +8,32 @@
 /* What zlib packs is larger by this factor at most. */
 #define MOST_RATIO 1032
 
-/* The value of a digit of base64, -1: none. */
-static int digit_value(char c)
+/* The bytes that base64 stands for, up to what is none; returns their number. What is padded may go on behind
+ * the padding: the head of the data is often encoded apart. */
+static int64_t decode(const char *at, const char *end, char *bytes)
 {
     static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    const char *found = c != '\0' ? strchr(digits, c) : NULL;
-    return found != NULL ? (int)(found - digits) : -1;
-}
-
-/* The bytes that four digits stand for, 1 to 3; 0: they are no such digits. *at moves behind them. */
-static int next_group(const char **at, const char *end, char byte[3])
-{
+    int64_t count = 0;
     uint32_t bits = 0;
-    int count = 0, padding = 0;
-    for (; *at < end && count + padding < 4; ++*at) {
-        int value = digit_value(**at);
-        if (value >= 0 && padding == 0) {
-            bits = bits << 6 | (uint32_t)value;
-            count++;
-        } else if (**at == '=') {
-            padding++;
-        } else if (strchr(" \t\r\n", **at) == NULL) {
-            return 0;
+    for (int place = 0, padding = 0; at < end; at++) {
+        const char *digit = *at != '\0' && padding == 0 ? strchr(digits, *at) : NULL;
+        if (digit == NULL && input_is_blank(*at)) {
+            continue;
+        }
+        if (digit == NULL && (*at != '=' || place < 2)) {
+            break;
+        }
+        bits = bits << 6 | (digit != NULL ? (uint32_t)(digit - digits) : 0);
+        padding += digit == NULL;
+        if (++place == 4) {
+            for (int k = 0; k < 3; k++) {
+                bytes[count + k] = (char)(unsigned char)(bits >> (16 - 8 * k) & 255);
+            }
+            count += 3 - padding;
+            place = padding = 0;
         }
     }
-    if (count + padding < 4 || count < 2) {
-        return 0;
-    }
-    bits <<= 6 * padding;
-    for (int k = 0; k < 3; k++) {
-        byte[k] = (char)(unsigned char)(bits >> (16 - 8 * k) & 255);
-    }
-    return count - 1;
-}
-
-/* The first `size` bytes, to be freed; NULL after a failure. What is padded may go on behind the padding: the
- * head of the data is often encoded apart. */
-static char *read_bytes(struct msh_reader *r, const struct vtu_source *source, int64_t size)
-{
-    char *bytes = NULL;
-    const char *at = source->at;
-    int64_t left = source->end - at, got = 0;
-    if (size > (source->base64 ? left / 4 * 3 : left)) {
-        msh_fail(r, "%jd bytes cannot be in the %jd that are left", size, left);
-        return NULL;
-    }
-    MSH_NEW(r, &bytes, size + 3);
-    if (r->status == STATUS_OK && !source->base64) {
-        memcpy(bytes, at, (size_t)size);
-        return bytes;
-    }
-    while (r->status == STATUS_OK && got < size) {
-        char byte[3];
-        int count = next_group(&at, source->end, byte);
-        memcpy(&bytes[got], byte, (size_t)count);
-        got += count;
-        if (count == 0) {
-            msh_fail(r, "no data in base64, or too little: the file is truncated or damaged");
-        }
-    }
-    if (r->status != STATUS_OK) {
-        free(bytes);
-        return NULL;
-    }
-    return bytes;
+    return count;
 }
 
 /* A number of the head; INT64_MAX: too large. */
@@ -85,108 +47,77 @@ static int64_t head_word(const struct vtu_source *source, const char *bytes, int
     return number <= INT64_MAX ? (int64_t)number : INT64_MAX;
 }
 
-static char *read_plain(struct msh_reader *r, struct vtu_source *source, int64_t *size)
+static bool has_bytes(struct msh_reader *r, int64_t left, int64_t needed)
 {
-    SCRATCH char *head = read_bytes(r, source, source->word);
-    *size = head != NULL ? head_word(source, head, 0) : 0;
-    if (*size > source->end - source->at) {
-        msh_fail(r, "%jd bytes cannot be in what is left of the file", *size);
+    if (needed > left) {
+        msh_fail(r, "%jd bytes, where there are %jd: the file is truncated or damaged", needed, left);
     }
-    char *bytes = r->status == STATUS_OK ? read_bytes(r, source, source->word + *size) : NULL;
-    if (bytes != NULL) {
-        memmove(bytes, bytes + source->word, (size_t)*size);
-        source->taken = source->word + *size;
-    }
-    return bytes;
+    return r->status == STATUS_OK;
 }
 
-/* Blocks, with their number, the size of each, that of the last if it is another (else 0), and the compressed
- * sizes in the head. */
-struct blocks {
-    int64_t count, size, last, packed; /* packed: bytes of all */
-    char *head;
-};
-
-static void read_blocks(struct msh_reader *r, const struct vtu_source *source, struct blocks *blocks)
+/* bytes[left]: the size of the data, and these. */
+static void copy(struct msh_reader *r, const struct vtu_source *source, const char *bytes, int64_t left,
+                 struct vtu_bytes *data)
 {
-    int64_t left = source->end - source->at;
-    SCRATCH char *first = read_bytes(r, source, 3L * source->word);
-    if (first == NULL) {
-        return;
+    data->size = has_bytes(r, left, source->word) ? head_word(source, bytes, 0) : 0;
+    if (has_bytes(r, left - source->word, data->size)) {
+        MSH_NEW(r, &data->bytes, data->size);
     }
-    blocks->count = head_word(source, first, 0);
-    blocks->size = head_word(source, first, 1);
-    blocks->last = head_word(source, first, 2);
-    if (blocks->count > left / source->word || blocks->last > blocks->size) {
-        msh_fail(r, "%jd blocks of %jd bytes cannot be in what is left of the file", blocks->count,
-                 blocks->size);
-        return;
-    }
-    blocks->head = read_bytes(r, source, (3 + blocks->count) * source->word);
-    for (int64_t b = 0; blocks->head != NULL && b < blocks->count; b++) {
-        int64_t packed = head_word(source, blocks->head, 3 + b);
-        /* More than is there is found when it is read. */
-        blocks->packed = packed > left - blocks->packed ? left : blocks->packed + packed;
+    if (r->status == STATUS_OK) {
+        memcpy(data->bytes, bytes + source->word, (size_t)data->size);
     }
 }
 
-static void fail_damaged(struct msh_reader *r)
-{
-    msh_fail(r, "a block of the compressed data is damaged");
-}
-
-/* The bytes that the blocks are to hold. Refuse more than has a place, or than zlib can have packed, before
+/* bytes[left]: the number of blocks, the size of each, that of the last if it is another (else 0), the
+ * compressed sizes, and the blocks. More than has a place, or than zlib can have packed, is refused before
  * any is unpacked: zeros are packed a thousandfold. */
-static int64_t check_claim(struct msh_reader *r, const struct blocks *blocks, int64_t most)
+static void unpack(struct msh_reader *r, const struct vtu_source *source, const char *bytes, int64_t left,
+                   struct vtu_bytes *data)
 {
-    int64_t size = 0;
-    bool is_short = blocks->count > 0 && blocks->last > 0;
-    if (__builtin_mul_overflow(blocks->count - is_short, blocks->size, &size) ||
-        __builtin_add_overflow(size, is_short ? blocks->last : 0, &size) || size > most) {
-        msh_fail(r, "%jd blocks of %jd bytes are more than the %jd that its numbers take", blocks->count,
-                 blocks->size, most);
-    } else if (size / MOST_RATIO > blocks->packed) {
-        fail_damaged(r);
+    if (!has_bytes(r, left, 3L * source->word)) {
+        return;
     }
-    return size;
-}
-
-static char *read_compressed(struct msh_reader *r, struct vtu_source *source, int64_t *size)
-{
-    struct blocks blocks = {0};
-    char *bytes = NULL;
-    read_blocks(r, source, &blocks);
-    SCRATCH char *head = blocks.head;
-    int64_t whole = check_claim(r, &blocks, source->most);
-    if (r->status != STATUS_OK) {
-        return NULL;
+    int64_t count = head_word(source, bytes, 0), size = head_word(source, bytes, 1),
+            last = head_word(source, bytes, 2), whole = 0;
+    bool is_short = count > 0 && last > 0;
+    if (count > left / source->word - 3 || last > size) {
+        msh_fail(r, "%jd blocks of %jd bytes cannot be in what is left of the file", count, size);
+        return;
     }
-    int64_t at = (3 + blocks.count) * source->word, end = at + blocks.packed;
-    SCRATCH char *packed = read_bytes(r, source, end);
-    source->taken = end;
-    MSH_NEW(r, &bytes, whole);
-    for (int64_t b = *size = 0; r->status == STATUS_OK && b < blocks.count; b++) {
-        int64_t count = head_word(source, head, 3 + b);
-        bool is_last = b == blocks.count - 1 && blocks.last > 0;
-        uLongf wanted = (uLongf)(is_last ? blocks.last : blocks.size), got = wanted;
-        count = count < end - at ? count : end - at;
-        int result = uncompress((Bytef *)bytes + *size, &got, (const Bytef *)packed + at, (uLong)count);
+    int64_t at = (3 + count) * source->word;
+    if (__builtin_mul_overflow(count - is_short, size, &whole) ||
+        __builtin_add_overflow(whole, is_short ? last : 0, &whole) || whole > source->most) {
+        msh_fail(r, "%jd blocks of %jd bytes are more than the %jd that its numbers take", count, size,
+                 source->most);
+    } else if (whole / MOST_RATIO > left - at) {
+        msh_fail(r, "a block of the compressed data is damaged");
+    }
+    MSH_NEW(r, &data->bytes, whole);
+    for (int64_t b = data->size = 0; r->status == STATUS_OK && b < count; b++) {
+        int64_t packed = head_word(source, bytes, 3 + b);
+        uLongf wanted = (uLongf)(is_short && b == count - 1 ? last : size), got = wanted;
+        packed = packed < left - at ? packed : left - at;
+        int result =
+            uncompress((Bytef *)data->bytes + data->size, &got, (const Bytef *)bytes + at, (uLong)packed);
         if (result == Z_MEM_ERROR) {
             r->status = fail_memory(r->error, "zlib");
         } else if (result != Z_OK || got != wanted) {
-            fail_damaged(r);
+            msh_fail(r, "a block of the compressed data is damaged");
         }
-        at += count;
-        *size += (int64_t)wanted;
+        at += packed;
+        data->size += (int64_t)wanted;
     }
-    if (r->status != STATUS_OK) {
-        free(bytes);
-        return NULL;
-    }
-    return bytes;
 }
 
-char *vtu_bytes(struct msh_reader *r, struct vtu_source *source, int64_t *size)
+void vtu_read_bytes(struct msh_reader *r, const struct vtu_source *source, struct vtu_bytes *data)
 {
-    return source->compressed ? read_compressed(r, source, size) : read_plain(r, source, size);
+    SCRATCH char *decoded = NULL;
+    const char *bytes = source->at;
+    int64_t left = source->end - source->at;
+    if (source->base64) {
+        MSH_NEW(r, &decoded, left / 4 * 3 + 3);
+        left = r->status == STATUS_OK ? decode(source->at, source->end, decoded) : 0;
+        bytes = decoded;
+    }
+    (source->compressed ? unpack : copy)(r, source, bytes, left, data);
 }

@@ -141,26 +141,26 @@ static int64_t most_numbers(const struct vtu *u)
     return u->at.expected >= 0 ? u->at.expected : 27 * u->v.cell_count;
 }
 
-/* Read the array at hand from the bytes of its source. */
-static void read_binary(struct vtu *u, struct vtu_source *source)
+/* Read the array at hand from the bytes there. */
+static void read_binary(struct vtu *u, const char *at, const char *end, bool base64)
 {
     struct msh_reader *r = u->v.r;
-    int64_t size;
-    if (__builtin_mul_overflow(most_numbers(u), u->at.type->size, &source->most)) {
-        source->most = INT64_MAX;
+    struct vtu_source source = {at, end, base64, u->swap, u->compressed, u->word, INT64_MAX};
+    struct vtu_bytes data = {0};
+    int64_t most;
+    if (!__builtin_mul_overflow(most_numbers(u), u->at.type->size, &most)) {
+        source.most = most;
     }
-    SCRATCH char *bytes = vtu_bytes(r, source, &size);
-    if (bytes == NULL) {
-        return;
-    }
-    int64_t count = u->at.expected < 0 ? size / u->at.type->size : u->at.expected;
-    if (count > size / u->at.type->size || count * u->at.type->size != size) {
-        msh_fail(r, "%s: %jd bytes, not %jd numbers of %d", u->at.array.name, size, count, u->at.type->size);
+    vtu_read_bytes(r, &source, &data);
+    int64_t size = u->at.type->size, count = u->at.expected < 0 ? data.size / size : u->at.expected;
+    if (count > data.size / size || count * size != data.size) {
+        msh_fail(r, "%s: %jd bytes, not %jd numbers of %jd", u->at.array.name, data.size, count, size);
     }
     struct vtk_array *array = vtk_add(&u->v, &u->at.array, count);
     if (array != NULL) {
-        vtk_fill_binary(u->v.r, array, u->at.type, u->swap, bytes);
+        vtk_fill_binary(r, array, u->at.type, u->swap, data.bytes);
     }
+    free(data.bytes);
 }
 
 static void read_text(struct vtu *u, const char *text, const char *end)
@@ -191,7 +191,7 @@ static void end(void *context, const char *name, const char *text, int64_t size,
     if (strcmp(u->format, "ascii") == 0) {
         read_text(u, text, text + size);
     } else if (strcmp(u->format, "binary") == 0) {
-        read_binary(u, &(struct vtu_source){text, text + size, true, u->swap, u->compressed, u->word, 0, 0});
+        read_binary(u, text, text + size, true);
     } else if (strcmp(u->format, "appended") == 0) {
         MSH_GROW(r, &u->appended, u->appended_count + 1, &u->appended_room);
         if (r->status == STATUS_OK) {
@@ -203,7 +203,15 @@ static void end(void *context, const char *name, const char *text, int64_t size,
     u->at.type = NULL;
 }
 
-/* Read the appended data: behind the tag, which may be followed by blanks, and '_'. */
+static int compare_offsets(const void *left, const void *right)
+{
+    const struct vtu_array *a = left, *b = right;
+    return a->offset != b->offset ? (a->offset > b->offset) - (a->offset < b->offset)
+                                  : strcmp(a->array.name, b->array.name);
+}
+
+/* Read the appended data: behind the tag, which may be followed by blanks, and '_'. Arrays do not share their
+ * bytes: they would be more than the file. */
 static void read_appended(struct vtu *u)
 {
     struct msh_reader *r = u->v.r;
@@ -213,25 +221,22 @@ static void read_appended(struct vtu *u)
         data++;
     }
     input_at(r, "AppendedData", 0);
-    if (data == r->end || *data != '_') {
+    if (data == r->end || *data++ != '_') {
         msh_fail(r, "it is missing, or does not begin with '_': the file is truncated");
     }
     bool base64 = r->status == STATUS_OK && memmem(tag, (size_t)(close - tag), "base64", 6) != NULL;
-    int64_t left = r->end - data; /* arrays do not share their bytes: they would be more than the file */
+    qsort(u->appended, (size_t)u->appended_count, sizeof *u->appended, compare_offsets);
     for (int64_t i = 0; r->status == STATUS_OK && i < u->appended_count; i++) {
-        u->at = u->appended[i];
-        if (u->at.offset > r->end - data - 1) {
-            msh_fail(r, "%s: its offset %jd is behind the end of the file: it is truncated", u->at.array.name,
-                     u->at.offset);
-            break;
+        int64_t end = r->end - data;
+        if (i + 1 < u->appended_count && u->appended[i + 1].offset < end) {
+            end = u->appended[i + 1].offset;
         }
-        struct vtu_source source = {data + 1 + u->at.offset, r->end,  base64, u->swap,
-                                    u->compressed,           u->word, 0,      0};
-        read_binary(u, &source);
-        left -= source.taken;
-        if (left < 0) {
-            msh_fail(r, "%s: the arrays together are larger than the file: their offsets are damaged",
-                     u->at.array.name);
+        u->at = u->appended[i];
+        if (u->at.offset >= end) {
+            msh_fail(r, "%s: its offset %jd is behind the end of the file, or that of another array, too",
+                     u->at.array.name, u->at.offset);
+        } else {
+            read_binary(u, data + u->at.offset, data + end, base64);
         }
     }
 }
