@@ -6,8 +6,7 @@
  * so that time and memory of the shares do not grow with the number of centres.
  *
  * The distance is the Euclidean one, or half the length of the shortest path from neighbour to neighbour
- * where that is more, so that the two faces of a slit are far from each other. Nodes that no path from a
- * centre leads to have no shares; each connected part has a centre, as long as there are any. */
+ * where that is more, so that the two faces of a slit are far from each other. */
 #pragma once
 
 #include "approx/shape/shape.h"
@@ -23,15 +22,14 @@ struct coarse_space {
     int64_t node_count;
     const double *X; /* node_count * dim, m; the caller's */
     int64_t centre_count, count;
-    double *centre; /* centre_count * dim, m */
-    double radius;  /* within which a centre has a share, m */
-    struct sparse
-        shares; /* a row for each node: the centres, ascending, and their shares, of sum 1, or none */
+    double *centre;          /* centre_count * dim, m */
+    double radius;           /* within which a centre has a share, m */
+    struct sparse shares;    /* a row for each node: the centres, ascending, and their shares, of sum 1 */
     struct sparse of_centre; /* the transpose */
 };
 
-/* Fields of so many centres; none for 0. `neighbours` of each node; NULL: all distances are straight. Errors:
- * STATUS_SYSTEM (memory). */
+/* Fields of so many centres; none for 0. `neighbours` of each node; NULL: all distances are straight, as they
+ * are between bodies. Errors: STATUS_SYSTEM (memory). */
 MUST_CHECK enum status coarse_space_build(int dim, int64_t node_count, const double *X,
                                           const struct neighbours *neighbours, int64_t centre_count,
                                           struct coarse_space *coarse, struct error *error);
