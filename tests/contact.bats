@@ -120,7 +120,7 @@ lid() {
 }
 
 @test "an asterisk is the whole boundary, of a mesh without names as well: a disc rests in a groove" {
-    printf 'SetFactory("OpenCASCADE");\nDisk(1) = {0, 0, 0, 50};\nMesh.MeshSizeMin = 10;\nMesh.MeshSizeMax = 10;\n' > disc.geo
+    printf 'SetFactory("OpenCASCADE");\nDisk(1) = {0, 0, 0, 50};\nMesh.MeshSizeMin = 9;\nMesh.MeshSizeMax = 9;\n' > disc.geo
     gmsh -v 1 -2 disc.geo -o disc.msh
     nodes -u mm disc.msh 2> said > disc.mts
     tag -f skin=all < disc.mts > named.mts
