@@ -13,11 +13,11 @@
 #include <string.h>
 
 /* Nodes for each field at least. */
-static const int64_t nodes_per_coarse_field = 8;
+static const int64_t nodes_per_coarse_field = 16;
 /* Unknowns at most where each costs an evaluation: 16 centres in two dimensions and 8 in three. */
 static const int64_t most_unknowns = 96;
 /* Centres at most where the stiffness is assembled: the matrices are dense, and more save no time. */
-static const int64_t most_centres = 64;
+static const int64_t most_centres = 128;
 
 static int64_t centre_count(const struct solid_system *system)
 {
