@@ -254,8 +254,7 @@ void run_quasi_static(struct run *run)
         if (in_time) {
             fprintf(stderr, "error of the steps of time\t%.2g\n", body_time_error(body));
         }
-        fprintf(stderr, "estimated error\t%.3g\nfrequency ratio\t%.5g\nleast J\t%.4g\n", report.error,
-                report.largest_frequency / report.lowest_frequency, report.least_jacobian);
+        fprintf(stderr, "estimated error\t%.3g\nleast J\t%.4g\n", report.error, report.least_jacobian);
         run_report_springs(run);
     }
 }

@@ -88,8 +88,6 @@ void newton_judge_stability(struct newton *n)
         }
     }
     n->lowest = lanczos.count > 0 ? newton_lanczos_least(&lanczos) : 1.0;
-    report->largest_frequency = sqrt(largest);
-    report->lowest_frequency = sqrt(fmax(n->lowest, 0.0));
     (void)newton_evaluate(n, n->u, &n->at_u); /* the last evaluation again */
 }
 

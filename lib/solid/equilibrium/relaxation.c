@@ -111,7 +111,6 @@ static enum status visit(void *run, const struct state *state, struct error *err
         {"force_evaluations", STATE_COUNTS, &report->force_evaluations, 1},
         {"error", STATE_NUMBERS, &report->error, 1},
         {"move", STATE_NUMBERS, &report->move, 1},
-        {"lowest_frequency", STATE_NUMBERS, &report->lowest_frequency, 1},
         {"least_jacobian", STATE_NUMBERS, &report->least_jacobian, 1},
     };
     RETURN_IF_ERROR(state_visit(state, NULL, values, sizeof values / sizeof *values, error));
@@ -249,8 +248,6 @@ static void estimate(struct relaxation *r)
     move = vector_longest(r->system->dim, r->system->node_count, r->acceleration, &r->report->worst_node);
     bool at_rest = statics_is_at_rest(r->report, r->reach);
     r->report->error = at_rest ? 0.0 : safety * move / (least * r->report->move);
-    r->report->lowest_frequency = sqrt(least);
-    r->report->largest_frequency = r->frequency;
 }
 
 /* Whether the multipliers of contacts and of nodal pressures have converged. */

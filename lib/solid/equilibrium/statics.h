@@ -50,7 +50,6 @@ struct statics_report {
     double error; /* estimated remaining error at the worst node, relative to the present displacement */
     double move;  /* the largest displacement of a node, m, at least the tolerance times the largest of the
                    * run: the scale of error and penetration_allowed */
-    double largest_frequency, lowest_frequency; /* roots of the eigenvalues of M^-1 K, with its M */
     double penetration, penetration_allowed;    /* of contacts, m: see contact_miss */
     double load;                                /* share of the load at u, 0..1 */
     int64_t worst_node;     /* the farthest from equilibrium at the last estimate, the caller's index */
