@@ -1,6 +1,5 @@
 #include "approx/points/point_grid.h"
 
-#include "approx/points/sorted.h"
 #include "base/lists.h"
 #include "base/memory.h"
 
@@ -291,6 +290,15 @@ enum status point_grid_query_box(const struct point_grid *grid, const double *lo
     return STATUS_OK;
 }
 
+/* united[count_a + count_b]: the numbers of two ascending lists, which have none in common. */
+static void unite(const int32_t *a, int64_t count_a, const int32_t *b, int64_t count_b, int32_t *united)
+{
+    const int32_t *end_a = a + count_a, *end_b = b + count_b;
+    while (a < end_a || b < end_b) {
+        *united++ = b == end_b || (a < end_a && *a < *b) ? *a++ : *b++;
+    }
+}
+
 /* The same for a point, by the lists of supports that meet its bin. */
 static enum status query_touching(const struct point_grid *grid, const double *x, double factor,
                                   struct index_list *list, struct error *error)
@@ -307,7 +315,7 @@ static enum status query_touching(const struct point_grid *grid, const double *x
             *i = level->node[*i];
         }
         if (own > index && end > own) {
-            (void)sorted_union(index, own - index, own, end - own, end); /* no node is in two levels */
+            unite(index, own - index, own, end - own, end); /* no node is in two levels */
             memcpy(index, end, (size_t)(end - index) * sizeof *index);
         }
     }
