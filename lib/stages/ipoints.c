@@ -52,8 +52,8 @@ static enum status cell_points(const struct cells *cells, int per_cell, struct p
 
 /* A lattice of points, at least 2 along each axis, over the box of the nodes, x fastest; weights of the
  * trapezium rule. */
-static enum status lattice_points(const struct cells *nodes, const int64_t n[3],
-                                  struct points *points, struct error *error)
+static enum status lattice_points(const struct cells *nodes, const int64_t n[3], struct points *points,
+                                  struct error *error)
 {
     int dim = nodes->dim;
     int64_t count = 1;
@@ -82,8 +82,8 @@ static enum status lattice_points(const struct cells *nodes, const int64_t n[3],
     return STATUS_OK;
 }
 
-static enum status put_points(struct stream *stream, int dim, const char *rule,
-                              struct points *points, struct error *error)
+static enum status put_points(struct stream *stream, int dim, const char *rule, struct points *points,
+                              struct error *error)
 {
     char vector[64], attributes[96];
     int64_t count = points->count;

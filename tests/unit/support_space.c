@@ -108,7 +108,6 @@ TEST_IN_EACH_DIM(lists_stop_at_the_interface)
     int64_t crossing = 0;
     options.side = halves.side;
     GOOD(support_space_build(&options, &halves.cells, halves.radius, &space, &error));
-    assert_int_equal(space.side_count, 2);
     GOOD(support_space_lists(&options, &space, NULL, COUNT, x, "points", &lists, &error));
     for (int64_t p = 0; p < COUNT; p++) {
         int64_t at = lists.ptr[p];

@@ -128,7 +128,7 @@ static void find(double radius, bool widen)
         }
     }
     GOOD(point_grid_build(&found.grid, dim, body.node_count, body.x, found.radius, &error));
-    GOOD(visibility_build(&body.cells, &found.grid, &found.visibility, &error));
+    GOOD(visibility_build(&body.cells, NULL, &found.grid, &found.visibility, &error));
     struct visibility_places inside = {.cell = found.cell, .points_per_row = 1};
     GOOD(support_build(&found.options, &found.grid, &found.visibility, &inside, found.count, found.x,
                        "points", &found.lists, &error));

@@ -22,21 +22,19 @@ const char *point_text(int dim, const double *x, char text[96])
     return text;
 }
 
-static void worker_free(int64_t body_count, struct worker *worker)
+static void worker_free(struct worker *worker)
 {
-    for (int64_t b = 0; b < body_count && worker->visibility != NULL; b++) {
-        visibility_work_free(&worker->visibility[b]);
-    }
-    FREE_ALL(worker->list.index, worker->visibility, worker->order, worker->gradient);
+    visibility_work_free(&worker->visibility);
+    FREE_ALL(worker->list.index, worker->order, worker->gradient);
     mls_work_free(&worker->work);
 }
 
 static enum status check_finite(const struct search *search, int64_t count, struct error *error)
 {
-    for (int64_t i = 0; i < count * search->dim; i++) {
+    for (int64_t i = 0; i < count * search->grid->dim; i++) {
         if (!isfinite(search->x[i])) {
             return fail(error, STATUS_INPUT, "%s: row %lld: not a finite coordinate", search->what,
-                        (long long)(i / search->dim));
+                        (long long)(i / search->grid->dim));
         }
     }
     return STATUS_OK;
@@ -47,21 +45,20 @@ static enum status fail_support(const struct search *search, int64_t row, const 
                                 enum mls_verdict verdict, struct error *error)
 {
     char place[96], stray[96] = "";
-    const struct support_body *body = &search->body[search_body(search, row)];
-    const double *radius = body->grid->radius;
-    point_text(search->dim, search->x + row * search->dim, place);
+    const double *radius = search->grid->radius;
+    point_text(search->grid->dim, search->x + row * search->grid->dim, place);
     if (count > 0) {
         int32_t widest = index[0];
         for (int64_t i = 1; i < count; i++) {
             widest = radius[index[i]] > radius[widest] ? index[i] : widest;
         }
         snprintf(stray, sizeof stray, ", the largest radius being %.3g m, of node %d", radius[widest],
-                 body->node != NULL ? body->node[widest] : widest);
+                 widest);
     }
     return fail(error, STATUS_VERDICT,
                 "%s: row %lld at %s: no good support even at %g times the radius (%lld nodes within%s%s): %s",
                 search->what, (long long)row, place, SUPPORT_WIDEN_LIMIT, (long long)count,
-                body->visibility != NULL ? " reach through the cells" : "", stray,
+                search->visibility != NULL ? " reach through the cells" : "", stray,
                 verdict == MLS_TOO_FEW
                     ? "too few"
                     : "they lie in a plane or on a line (for mls2: on a quadric), or nearly so");
@@ -87,20 +84,13 @@ static enum status build_chunk(const struct search *search, int64_t first, int64
         struct found found;
         int64_t before = worker->list.count;
         RETURN_IF_ERROR(support_find(search, p, worker, &found, error));
-        int32_t *index = worker->list.index + before;
-        const int32_t *node = search->body[search_body(search, p)].node;
         int64_t count = worker->list.count - before;
-        if (search->unserved != NULL) {
-            search->unserved[p] = found.verdict != MLS_GOOD || found.steepness > 0.0;
-        } else if (found.verdict != MLS_GOOD) {
-            return fail_support(search, p, index, count, found.verdict, error);
+        if (found.verdict != MLS_GOOD) {
+            return fail_support(search, p, worker->list.index + before, count, found.verdict, error);
         }
         lists->widen[p] = found.widen;
         if (found.steepness > 0.0) {
             add_steep(&worker->steep, &(struct steep_points){1, p, found.steepness});
-        }
-        for (int64_t i = 0; i < count && node != NULL; i++) {
-            index[i] = node[index[i]];
         }
         lists->ptr[p + 1] = count;
     }
@@ -145,12 +135,7 @@ static enum status build_chunks(const struct search *search, struct support_list
             struct error own;
             int64_t first = c * chunk_points;
             int64_t last = first + chunk_points < lists->count ? first + chunk_points : lists->count;
-            enum status outcome = worker.visibility != NULL
-                                      ? STATUS_OK
-                                      : NEW_ARRAY(&worker.visibility, search->body_count, &own);
-            if (outcome == STATUS_OK) {
-                outcome = build_chunk(search, first, last, lists, &worker, &own);
-            }
+            enum status outcome = build_chunk(search, first, last, lists, &worker, &own);
 #pragma omp ordered
             if (failure == STATUS_OK) {
                 failure =
@@ -160,7 +145,7 @@ static enum status build_chunks(const struct search *search, struct support_list
                 }
             }
         }
-        worker_free(search->body_count, &worker);
+        worker_free(&worker);
     }
     return failure;
 }
@@ -170,27 +155,10 @@ enum status support_build(const struct support_options *options, const struct po
                           int64_t count, const double *x, const char *what, struct support_lists *lists,
                           struct error *error)
 {
-    const struct support_body body = {.grid = grid, .visibility = visibility};
-    return support_build_among(options, 1, &body, NULL, places, count, x, what, NULL, lists, error);
-}
-
-enum status support_build_among(const struct support_options *options, int64_t body_count,
-                                const struct support_body *body, const int32_t *body_of,
-                                const struct visibility_places *places, int64_t count, const double *x,
-                                const char *what, bool *unserved, struct support_lists *lists,
-                                struct error *error)
-{
     enum status status;
     struct index_list all = {0};
     *lists = (struct support_lists){.count = count, .widest = 1.0};
-    struct search search = {.options = options,
-                            .dim = options->mls.dim, /* some bodies may have no nodes */
-                            .body_count = body_count,
-                            .body = body,
-                            .body_of = body_of,
-                            .x = x,
-                            .what = what,
-                            .unserved = unserved};
+    struct search search = {.options = options, .grid = grid, .visibility = visibility, .x = x, .what = what};
     TRY(NEW_ARRAY(&lists->ptr, count + 1, error));
     TRY(NEW_ARRAY(&lists->widen, count, error));
     if (places != NULL) {

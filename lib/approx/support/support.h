@@ -50,31 +50,18 @@ MUST_CHECK enum status support_radii(const struct support_options *options, int6
                                      const double *spacing, double *radius, struct error *error);
 
 /* The neighbour lists of points x[count * dim]; `what` names these in messages. With `visibility`, neighbours
- * must be visible through the cells (visibility.h), and `places` are the cells that contain the points; with
- * visibility NULL all nodes within their radius are neighbours. Threaded; the result does not depend on the
- * number of threads. Widening ends at eightfold: gradients may exceed their bound then, as little as any of
- * these radii lets them (lists->steep). STATUS_VERDICT, naming the point, if no moment matrix is
- * well-conditioned; without options->widen the shape functions report that. STATUS_INPUT for coordinates that
- * are not finite. */
+ * must be visible through the cells (visibility.h), and `places` (NULL: not known) are the cells that contain
+ * the points; with visibility NULL all nodes within their radius are neighbours. Points that have no good
+ * support on their side of the interfaces, e.g. in a sliver, see the whole body. Threaded; the result does
+ * not depend on the number of threads. Widening ends at eightfold: gradients may exceed their bound then, as
+ * little as any of these radii lets them (lists->steep). STATUS_VERDICT, naming the point, if no moment
+ * matrix is well-conditioned; without options->widen the shape functions report that. STATUS_INPUT for
+ * coordinates that are not finite. */
 MUST_CHECK enum status support_build(const struct support_options *options, const struct point_grid *grid,
                                      const struct visibility *visibility,
                                      const struct visibility_places *places, int64_t count, const double *x,
                                      const char *what, struct support_lists *lists, struct error *error);
 
-/* A body in which neighbours are searched. */
-struct support_body {
-    const struct point_grid *grid;
-    const struct visibility *visibility; /* as above */
-    const int32_t *node; /* the numbers of its nodes in the lists, ascending; NULL: their own */
-};
-/* The same for several bodies: the neighbours of point p are nodes of the body number body_of[p], or of the
- * first one where body_of is NULL. The places are nodes and cells of that body. unserved[count]: set for
- * points without a good support; NULL: such a point is an error. */
-MUST_CHECK enum status support_build_among(const struct support_options *options, int64_t body_count,
-                                           const struct support_body *body, const int32_t *body_of,
-                                           const struct visibility_places *places, int64_t count,
-                                           const double *x, const char *what, bool *unserved,
-                                           struct support_lists *lists, struct error *error);
 void support_free(struct support_lists *lists);
 
 /* Print "(x, y[, z])" of a point into text[96], for messages; returns text. POINT_TEXT: a text that lasts as

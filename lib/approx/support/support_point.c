@@ -92,36 +92,29 @@ static enum status judge(const struct support_options *options, const struct poi
 static enum status gather(const struct search *search, int64_t p, int64_t first, struct worker *worker,
                           const struct found *found, struct error *error)
 {
-    int32_t body = search_body(search, p);
-    const struct support_body *of = &search->body[body];
-    struct visibility_work *work = &worker->visibility[body];
-    const double *x = search->x + p * search->dim;
+    const struct point_grid *grid = search->grid;
+    const double *x = search->x + p * grid->dim;
     worker->list.count = first;
-    RETURN_IF_ERROR(point_grid_query(of->grid, x, found->widen, &worker->list, error));
+    RETURN_IF_ERROR(point_grid_query(grid, x, found->widen, &worker->list, error));
     int64_t count = worker->list.count - first;
     int32_t *index = worker->list.index + first;
-    if (of->visibility != NULL) {
-        RETURN_IF_ERROR(visibility_filter(of->visibility, found->widen, index, &count, work, error));
+    if (search->visibility != NULL) {
+        RETURN_IF_ERROR(
+            visibility_filter(search->visibility, found->widen, index, &count, &worker->visibility, error));
     }
-    RETURN_IF_ERROR(keep_nearest(of->grid, x, search->options->most, index, &count, worker, error));
+    RETURN_IF_ERROR(keep_nearest(grid, x, search->options->most, index, &count, worker, error));
     worker->list.count = first + count;
     return STATUS_OK;
 }
 
-enum status support_find(const struct search *search, int64_t p, struct worker *worker, struct found *found,
-                         struct error *error)
+/* Widen the radii until the support, of neighbours from `first` on of the worker's list, is admissible. */
+static enum status widen(const struct search *search, int64_t p, int64_t first, struct worker *worker,
+                         struct found *found, struct error *error)
 {
     const struct support_options *options = search->options;
-    int32_t body = search_body(search, p);
-    const struct point_grid *grid = search->body[body].grid;
-    const struct visibility *visibility = search->body[body].visibility;
+    const struct point_grid *grid = search->grid;
     const double *x = search->x + p * grid->dim;
     struct found best = {.steepness = INFINITY};
-    int64_t first = worker->list.count;
-    if (visibility != NULL) {
-        RETURN_IF_ERROR(
-            visibility_begin(visibility, &search->places, p, x, &worker->visibility[body], error));
-    }
     *found = (struct found){.widen = 1.0};
     if (!options->widen) {
         return gather(search, p, first, worker, found, error);
@@ -140,6 +133,24 @@ enum status support_find(const struct search *search, int64_t p, struct worker *
     if (best.widen > 0.0) {
         *found = best;
         return gather(search, p, first, worker, found, error);
+    }
+    return STATUS_OK;
+}
+
+enum status support_find(const struct search *search, int64_t p, struct worker *worker, struct found *found,
+                         struct error *error)
+{
+    const struct visibility *visibility = search->visibility;
+    bool sided = visibility != NULL && visibility->cell_side != NULL, good = false;
+    int64_t first = worker->list.count;
+    for (int whole = 0; whole <= sided && !good; whole++) {
+        if (visibility != NULL) {
+            RETURN_IF_ERROR(visibility_begin(visibility, &search->places, p,
+                                             search->x + p * search->grid->dim, whole == 1,
+                                             &worker->visibility, error));
+        }
+        RETURN_IF_ERROR(widen(search, p, first, worker, found, error));
+        good = found->verdict == MLS_GOOD && !(found->steepness > 0.0);
     }
     return STATUS_OK;
 }

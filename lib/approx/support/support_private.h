@@ -8,20 +8,17 @@
 /* The input of a search for neighbours. */
 struct search {
     const struct support_options *options;
-    int dim;
-    int64_t body_count;
-    const struct support_body *body;
-    const int32_t *body_of; /* of each point; NULL: the first */
+    const struct point_grid *grid;
+    const struct visibility *visibility; /* NULL: all nodes within their radius are neighbours */
     struct visibility_places places;
     const double *x;
     const char *what;
-    bool *unserved; /* points without a good support; NULL: such a point is an error */
 };
 
 /* One thread's growing lists and scratch. */
 struct worker {
     struct index_list list;
-    struct visibility_work *visibility; /* for each body */
+    struct visibility_work visibility;
     struct mls_work work;
     double *order, *gradient;
     int64_t order_room, gradient_room;
@@ -37,12 +34,6 @@ struct found {
 
 /* Append the neighbours of point p to the worker's list. The radii are widened until the support is
  * admissible, at most by SUPPORT_WIDEN_LIMIT. If gradients exceed their bound with all radii, those that
- * exceed it least are taken. */
+ * exceed it least are taken. Without a good support on its side, the point sees the whole body. */
 MUST_CHECK enum status support_find(const struct search *search, int64_t p, struct worker *worker,
                                     struct found *found, struct error *error);
-
-/* The number of the body in which neighbours of point p are searched. */
-static inline int32_t search_body(const struct search *search, int64_t p)
-{
-    return search->body_of != NULL ? search->body_of[p] : 0;
-}

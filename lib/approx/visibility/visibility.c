@@ -26,24 +26,56 @@ enum status visibility_build_cells(const struct cells *cells, struct visibility 
                         &visibility->star, error);
 }
 
-/* part[node_count]: the body of each node, -1: of several; cells with a common face are of one body. */
-static enum status find_bodies(const struct visibility *visibility, int32_t *part, struct error *error)
+/* Whether sight ends at face s % (dim + 1) of cell s / (dim + 1): on the boundary or an interface. */
+static bool is_end(const struct visibility *visibility, int64_t s)
+{
+    int32_t next = visibility->across[s];
+    const int32_t *side = visibility->cell_side;
+    return next < 0 || (side != NULL && side[next] != side[s / (visibility->cells.dim + 1)]);
+}
+
+/* Parts of the cells: of each cell, and of each node, -1: of several. */
+struct parts {
+    const int32_t *cell, *node;
+};
+
+/* Whether a node is of a part. */
+static bool is_of(const struct visibility *visibility, const struct parts *parts, int32_t node, int32_t part)
+{
+    if (parts->node[node] >= 0) {
+        return parts->node[node] == part;
+    }
+    for (int64_t s = visibility->star_ptr[node]; s < visibility->star_ptr[node + 1]; s++) {
+        if (parts->cell[visibility->star[s]] == part) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static struct parts sides_of(const struct visibility *visibility)
+{
+    return (struct parts){visibility->cell_side, visibility->node_side};
+}
+
+/* The bodies: cells with a common face on one side. of_cell[cells.count], of_node[cells.node_count]. */
+static enum status find_bodies(const struct visibility *visibility, int32_t *of_cell, int32_t *of_node,
+                               struct error *error)
 {
     const struct cells *cells = &visibility->cells;
     int corners = cells->dim + 1;
-    NEW_SCRATCH(int32_t, of_cell, cells->count, error);
     for (int64_t c = 0; c < cells->count; c++) {
         of_cell[c] = (int32_t)c;
     }
     for (int64_t s = 0; s < cells->count * corners; s++) {
-        if (visibility->across[s] >= 0) {
+        if (!is_end(visibility, s)) {
             set_join(of_cell, (int32_t)(s / corners), visibility->across[s]);
         }
     }
     for (int64_t c = 0; c < cells->count; c++) {
         of_cell[c] = set_first(of_cell, (int32_t)c);
     }
-    return nodes_parts(cells, of_cell, part, error);
+    return nodes_parts(cells, of_cell, of_node, error);
 }
 
 /* The sector of directions from `from` that x lies in, by the signs of its coordinates there. */
@@ -90,27 +122,50 @@ static void note_facet(struct visibility *visibility, const int32_t *facet, int3
     }
 }
 
-enum status visibility_build(const struct cells *cells, const struct point_grid *grid,
-                             struct visibility *visibility, struct error *error)
+/* Note what a face of a cell, at which sight ends, may hide from points on its side. */
+static enum status note_face(struct visibility *visibility, int64_t cell, int vertex,
+                             const struct parts *bodies, struct index_list *near, struct error *error)
 {
-    FREED_BY(faces_free) struct faces faces = {0};
+    const struct cells *cells = &visibility->cells;
+    const struct parts sides = sides_of(visibility);
+    int32_t facet[3];
+    cell_face(cells, cell, vertex, facet);
+    struct box box = box_of_nodes(cells->dim, cells->x, facet, cells->dim);
+    near->count = 0;
+    RETURN_IF_ERROR(point_grid_query_box(visibility->grid, box.low, box.high, 1.0, near, error));
+    for (int64_t i = 0; i < near->count; i++) {
+        int32_t node = near->index[i];
+        if (sides.cell == NULL || is_of(visibility, &sides, node, sides.cell[cell])) {
+            note_facet(visibility, facet, node, !is_of(visibility, bodies, node, bodies->cell[cell]));
+        }
+    }
+    return STATUS_OK;
+}
+
+enum status visibility_build(const struct cells *cells, const int32_t *cell_side,
+                             const struct point_grid *grid, struct visibility *visibility,
+                             struct error *error)
+{
     FREED_BY(index_list_free) struct index_list near = {0};
+    int corners = cells->dim + 1;
     RETURN_IF_ERROR(visibility_build_cells(cells, visibility, error));
     visibility->grid = grid;
-    NEW_SCRATCH(int32_t, part, cells->node_count, error);
-    RETURN_IF_ERROR(find_bodies(visibility, part, error));
-    RETURN_IF_ERROR(faces_build(cells, true, &faces, error));
+    visibility->cell_side = cell_side;
+    NEW_SCRATCH(int32_t, of_cell, cells->count, error);
+    NEW_SCRATCH(int32_t, of_node, cells->node_count, error);
+    RETURN_IF_ERROR(find_bodies(visibility, of_cell, of_node, error));
+    if (cell_side != NULL) {
+        RETURN_IF_ERROR(NEW_ARRAY(&visibility->node_side, cells->node_count, error));
+        RETURN_IF_ERROR(nodes_parts(cells, cell_side, visibility->node_side, error));
+    }
     RETURN_IF_ERROR(NEW_ARRAY(&visibility->hidden_from, cells->node_count << cells->dim, error));
     for (int64_t i = 0; i < cells->node_count << cells->dim; i++) {
         visibility->hidden_from[i] = INFINITY;
     }
-    for (int64_t f = 0; f < faces.count; f++) {
-        const int32_t *facet = faces.node + f * cells->dim;
-        struct box box = box_of_nodes(cells->dim, cells->x, facet, cells->dim);
-        near.count = 0;
-        RETURN_IF_ERROR(point_grid_query_box(grid, box.low, box.high, 1.0, &near, error));
-        for (int64_t i = 0; i < near.count; i++) {
-            note_facet(visibility, facet, near.index[i], part[near.index[i]] != part[facet[0]]);
+    for (int64_t s = 0; s < cells->count * corners; s++) {
+        if (is_end(visibility, s)) {
+            RETURN_IF_ERROR(note_face(visibility, s / corners, (int)(s % corners),
+                                      &(struct parts){of_cell, of_node}, &near, error));
         }
     }
     return STATUS_OK;
@@ -118,7 +173,8 @@ enum status visibility_build(const struct cells *cells, const struct point_grid 
 
 void visibility_free(struct visibility *visibility)
 {
-    FREE_ALL(visibility->across, visibility->star_ptr, visibility->star, visibility->hidden_from);
+    FREE_ALL(visibility->node_side, visibility->across, visibility->star_ptr, visibility->star,
+             visibility->hidden_from);
     *visibility = (struct visibility){0};
 }
 
@@ -128,8 +184,35 @@ void visibility_work_free(struct visibility_work *work)
     *work = (struct visibility_work){0};
 }
 
+/* Keep the point's cells that are on the lowest of their sides; search for them where they are not known. */
+static enum status take_side(const struct visibility *visibility, struct visibility_work *work,
+                             struct error *error)
+{
+    if (work->cell_count <= 0) {
+        RETURN_IF_ERROR(visibility_locate(visibility, work->x, work, error));
+    } else {
+        work->own.count = 0;
+        RETURN_IF_ERROR(index_list_reserve(&work->own, work->cell_count, error));
+    }
+    work->side = work->cell_count > 0 ? INT32_MAX : 0;
+    for (int64_t i = 0; i < work->cell_count; i++) {
+        int32_t side = visibility->cell_side[work->cell[i]];
+        work->side = side < work->side ? side : work->side;
+    }
+    work->own.count = 0;
+    for (int64_t i = 0; i < work->cell_count; i++) {
+        if (visibility->cell_side[work->cell[i]] == work->side) {
+            work->own.index[work->own.count++] = work->cell[i];
+        }
+    }
+    work->cell = work->own.index;
+    work->cell_count = work->own.count;
+    return STATUS_OK;
+}
+
 enum status visibility_begin(const struct visibility *visibility, const struct visibility_places *places,
-                             int64_t p, const double *x, struct visibility_work *work, struct error *error)
+                             int64_t p, const double *x, bool whole, struct visibility_work *work,
+                             struct error *error)
 {
     if (work->mark == NULL) {
         RETURN_IF_ERROR(NEW_ARRAY(&work->mark, visibility->cells.node_count, error));
@@ -142,15 +225,15 @@ enum status visibility_begin(const struct visibility *visibility, const struct v
     work->outside = false;
     memcpy(work->from, x, (size_t)visibility->cells.dim * sizeof *x);
     work->cell_count = -1;
+    work->side = -1;
     if (places->nodes) {
-        int64_t node = places->node != NULL ? places->node[p] : p;
-        work->cell = visibility->star + visibility->star_ptr[node];
-        work->cell_count = visibility->star_ptr[node + 1] - visibility->star_ptr[node];
+        work->cell = visibility->star + visibility->star_ptr[p];
+        work->cell_count = visibility->star_ptr[p + 1] - visibility->star_ptr[p];
     } else if (places->cell != NULL) {
         work->cell = visibility_places_cells(places, p, &work->cell_count);
         work->cell_count = work->cell_count > 0 && work->cell[0] >= 0 ? work->cell_count : -1;
     }
-    return STATUS_OK;
+    return visibility->cell_side != NULL && !whole ? take_side(visibility, work, error) : STATUS_OK;
 }
 
 /* Whether a node is visible from a node of the point's cells, by way of which the path is not much longer
@@ -204,9 +287,14 @@ enum status visibility_filter(const struct visibility *visibility, double widen,
                               int64_t *count, struct visibility_work *work, struct error *error)
 {
     int64_t kept = 0;
+    const struct parts sides = sides_of(visibility);
+    bool whole = sides.cell != NULL && work->side < 0; /* hidden_from is for sides */
     for (int64_t i = 0; i < *count; i++) {
         bool seen = true;
-        if (widen > 1.0 || work->outside || may_be_hidden(visibility, index[i], work->x)) {
+        if (work->side >= 0 && !is_of(visibility, &sides, index[i], work->side)) {
+            continue;
+        }
+        if (widen > 1.0 || work->outside || whole || may_be_hidden(visibility, index[i], work->x)) {
             RETURN_IF_ERROR(work->cell_count < 0 ? visibility_locate(visibility, work->x, work, error)
                                                  : STATUS_OK);
             RETURN_IF_ERROR(work->cell_count > 0 ? look(visibility, index[i], work, &seen, error)

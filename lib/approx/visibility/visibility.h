@@ -18,20 +18,23 @@ enum visibility_rule { VISIBILITY_CELLS, VISIBILITY_DISTANCE, VISIBILITY_RULE_CO
 /* Names for command lines and headers: "cells", "distance". */
 extern const char *const visibility_names[VISIBILITY_RULE_COUNT];
 
-/* The cells and the grid are the caller's and must outlive this. */
+/* The cells with their sides, and the grid, are the caller's and must outlive this. */
 struct visibility {
     struct cells cells;
     const struct point_grid *grid;
-    int32_t *across;   /* cells_across */
-    int64_t *star_ptr; /* node_count + 1: the cells at each node (CSR) */
+    const int32_t *cell_side; /* of each cell: its side of the interfaces at which sight ends; NULL: none */
+    int32_t *node_side;       /* of each node: the side, -1 on an interface; NULL without interfaces */
+    int32_t *across;          /* cells_across */
+    int64_t *star_ptr;        /* node_count + 1: the cells at each node (CSR) */
     int32_t *star;
     double *hidden_from; /* node_count * 2^dim: distance, m, from which on facets of the boundary may hide the
                             node from a point, for each sector of directions; infinite: none does */
 };
 
 /* Errors: STATUS_INPUT for cells that share a face with more than one other; STATUS_SYSTEM (memory). */
-MUST_CHECK enum status visibility_build(const struct cells *cells, const struct point_grid *grid,
-                                        struct visibility *visibility, struct error *error);
+MUST_CHECK enum status visibility_build(const struct cells *cells, const int32_t *cell_side,
+                                        const struct point_grid *grid, struct visibility *visibility,
+                                        struct error *error);
 /* Only `across` and the stars, for paths along edges (edge_paths.h). Errors as above. */
 MUST_CHECK enum status visibility_build_cells(const struct cells *cells, struct visibility *visibility,
                                               struct error *error);
@@ -41,24 +44,11 @@ void visibility_free(struct visibility *visibility);
  * cells sees what the nearest place in a cell sees; a point far from all cells sees all nodes near it. */
 struct visibility_places {
     bool nodes;          /* point p is node p; */
-    const int32_t *node; /* or, unless NULL, node[p]; */
     const int32_t *cell; /* else, unless NULL: one cell for each row of points, -1: none; */
     const int64_t *ptr;  /* or, unless NULL: the cells of row r are cell[ptr[r]] to before cell[ptr[r + 1]] */
     int64_t points_per_row; /* of the first long_rows rows; the others have one point */
     int64_t long_rows;      /* 0: all rows */
 };
-
-/* The row of point p; *first: the first point of the row. */
-static inline int64_t visibility_places_row(const struct visibility_places *places, int64_t p, int64_t *first)
-{
-    int64_t row = p / places->points_per_row, rest = p - places->long_rows * places->points_per_row;
-    if (places->long_rows > 0 && rest >= 0) {
-        *first = p;
-        return places->long_rows + rest;
-    }
-    *first = row * places->points_per_row;
-    return row;
-}
 
 /* The known cells of point p, *count of them. */
 static inline const int32_t *visibility_places_cells(const struct visibility_places *places, int64_t p,
@@ -68,7 +58,8 @@ static inline const int32_t *visibility_places_cells(const struct visibility_pla
     if (places->nodes || places->cell == NULL) {
         return NULL;
     }
-    int64_t unused, row = visibility_places_row(places, p, &unused);
+    int64_t row = p / places->points_per_row, rest = p - places->long_rows * places->points_per_row;
+    row = places->long_rows > 0 && rest >= 0 ? places->long_rows + rest : row;
     int64_t first = places->ptr != NULL ? places->ptr[row] : row;
     *count = (places->ptr != NULL ? places->ptr[row + 1] : row + 1) - first;
     return places->cell + first;
@@ -81,16 +72,18 @@ struct visibility_work {
     bool outside;
     const int32_t *cell; /* and the cells that contain it */
     int64_t cell_count;  /* -1: not searched for yet */
+    int32_t side;        /* of these cells, the lowest; -1: sight does not end at interfaces */
     uint32_t serial;     /* of the point */
     uint32_t *mark;      /* node_count: 2 serial, or 2 serial + 1 for a neighbour, where that is known */
     struct index_list own, stack, visited;
 };
 void visibility_work_free(struct visibility_work *work);
 
-/* Set the current point: point p, at x. */
+/* Set the current point: point p, at x. It sees its side of the interfaces, on one the lowest side; or the
+ * whole body. */
 MUST_CHECK enum status visibility_begin(const struct visibility *visibility,
                                         const struct visibility_places *places, int64_t p, const double *x,
-                                        struct visibility_work *work, struct error *error);
+                                        bool whole, struct visibility_work *work, struct error *error);
 
 /* Of the candidates index[*count], nodes nearer than `widen` times their radius, keep the neighbours. */
 MUST_CHECK enum status visibility_filter(const struct visibility *visibility, double widen, int32_t *index,

@@ -109,6 +109,13 @@ static bool has_node(const struct cells *cells, int64_t cell, int32_t node)
     return v[0] == node || v[1] == node || v[2] == node || (cells->dim == 3 && v[3] == node);
 }
 
+/* Whether a cell is beyond an interface at which sight ends. */
+static bool is_beyond(const struct visibility *visibility, int32_t cell, const struct visibility_work *work)
+{
+    return visibility->cell_side != NULL && work->side >= 0 && cell >= 0 &&
+           visibility->cell_side[cell] != work->side;
+}
+
 /* Follow the segment from the cells of the stack. */
 static enum status follow(const struct visibility *visibility, const double *x, int32_t node,
                           struct visibility_work *work, bool *arrives, struct error *error)
@@ -127,8 +134,9 @@ static enum status follow(const struct visibility *visibility, const double *x, 
         }
         for (int i = 1; i <= corners; i++) { /* the cell ahead is the next one */
             int k = ahead + i < corners ? ahead + i : ahead + i - corners;
-            if (least[k] <= COARSE_ROUND_OFF) {
-                RETURN_IF_ERROR(visit(visibility->across[(int64_t)at * corners + k], work, error));
+            int32_t next = visibility->across[(int64_t)at * corners + k];
+            if (least[k] <= COARSE_ROUND_OFF && !is_beyond(visibility, next, work)) {
+                RETURN_IF_ERROR(visit(next, work, error));
             }
         }
     }
