@@ -131,70 +131,9 @@ void point_grid_free(struct point_grid *grid)
 {
     for (int l = 0; l < grid->level_count; l++) {
         const struct point_grid_level *level = &grid->level[l];
-        FREE_ALL(level->start, level->node, level->place, level->touch_start, level->touch);
+        FREE_ALL(level->start, level->node, level->place);
     }
     *grid = (struct point_grid){0};
-}
-
-/* The squared distance of a coordinate along an axis from a bin, in bins. */
-static inline double gap2(int64_t bin, double at)
-{
-    double gap = fmax(fmax((double)bin - at, at - (double)(bin + 1)), 0.0);
-    return gap * gap;
-}
-
-/* Count the bins that the support of the node at `slot` of a level meets; with a list, append the slot to
- * each. */
-static void file_bins(const struct point_grid_level *level, int dim, int32_t slot, int64_t *start,
-                      int32_t *list)
-{
-    const double *place = level->place + (int64_t)slot * (dim + 1);
-    double at[3] = {0.0, 0.0, 0.0}, radius = place[dim] * level->per_length * (1.0 + 1e-9) + 1e-9;
-    int64_t from[3] = {0, 0, 0}, to[3] = {0, 0, 0};
-    for (int a = 0; a < dim; a++) {
-        at[a] = (place[a] - level->origin[a]) * level->per_length;
-        from[a] = at[a] > radius ? (int64_t)(at[a] - radius) : 0;
-        to[a] = at[a] + radius < (double)level->bins[a] ? (int64_t)(at[a] + radius) : level->bins[a] - 1;
-    }
-    for (int64_t k = from[2]; k <= to[2]; k++) {
-        for (int64_t j = from[1]; j <= to[1]; j++) {
-            double rest = radius * radius - gap2(k, at[2]) - gap2(j, at[1]);
-            int64_t *row = start + (k * level->bins[1] + j) * level->bins[0];
-            for (int64_t i = from[0]; i <= to[0]; i++) {
-                if (gap2(i, at[0]) <= rest && list == NULL) {
-                    row[i + 2]++;
-                } else if (gap2(i, at[0]) <= rest) {
-                    list[row[i + 1]++] = slot;
-                }
-            }
-        }
-    }
-}
-
-enum status point_grid_list_touching(struct point_grid *grid, struct error *error)
-{
-    SCRATCH int32_t *slot = NULL; /* of each node of a level: its place there + 1 */
-    for (int l = 0; l < grid->level_count; l++) {
-        struct point_grid_level *level = &grid->level[l];
-        int64_t bins = level->bins[0] * level->bins[1] * level->bins[2];
-        free(slot);
-        RETURN_IF_ERROR(NEW_ARRAY(&slot, grid->node_count, error));
-        RETURN_IF_ERROR(NEW_ARRAY(&level->touch_start, bins + 2, error));
-        for (int32_t i = 0; level->start != NULL && i < level->start[bins]; i++) {
-            slot[level->node[i]] = i + 1;
-            file_bins(level, grid->dim, i, level->touch_start, NULL);
-        }
-        for (int64_t b = 0; b < bins; b++) {
-            level->touch_start[b + 2] += level->touch_start[b + 1];
-        }
-        RETURN_IF_ERROR(NEW_ARRAY(&level->touch, level->touch_start[bins + 1], error));
-        for (int64_t n = 0; n < grid->node_count; n++) {
-            if (slot[n] > 0) {
-                file_bins(level, grid->dim, slot[n] - 1, level->touch_start, level->touch);
-            }
-        }
-    }
-    return STATUS_OK;
 }
 
 enum status index_list_reserve(struct index_list *list, int64_t count, struct error *error)
@@ -202,52 +141,32 @@ enum status index_list_reserve(struct index_list *list, int64_t count, struct er
     return GROW_ARRAY(&list->index, list->count + count, &list->capacity, error);
 }
 
-/* Append the places [first, last) of a level whose supports meet the box; or, with slot[], the places
- * slot[first .. last) whose supports contain the point `low`. */
+/* Append the nodes at the places [first, last) of a level whose supports meet the box. */
 static inline __attribute__((always_inline)) void query_run(const struct point_grid_level *level, int dim,
-                                                            const int32_t *slot, int64_t first, int64_t last,
-                                                            const double *low, const double *high,
-                                                            double factor, struct index_list *list)
+                                                            int64_t first, int64_t last, const double *low,
+                                                            const double *high, double factor,
+                                                            struct index_list *list)
 {
     int32_t *index = list->index + list->count;
     int64_t found = 0;
     for (int64_t i = first; i < last; i++) {
-        int64_t at = slot != NULL ? slot[i] : i;
-        const double *place = level->place + at * (dim + 1);
+        const double *place = level->place + i * (dim + 1);
         double radius = place[dim] * factor, distance2 = 0.0;
         for (int a = 0; a < dim; a++) {
-            double difference = place[a] - low[a];
-            if (slot == NULL) {
-                double below = -difference, above = place[a] - high[a];
-                difference = (below > 0.0 ? below : 0.0) + (above > 0.0 ? above : 0.0);
-            }
+            double below = low[a] - place[a], above = place[a] - high[a];
+            double difference = (below > 0.0 ? below : 0.0) + (above > 0.0 ? above : 0.0);
             distance2 += difference * difference;
         }
-        index[found] = (int32_t)at;
+        index[found] = level->node[i];
         found += distance2 < radius * radius;
     }
     list->count += found;
 }
 
-/* The same, compiled for each dimension and kind. */
-static void query_any_run(const struct point_grid_level *level, int dim, const int32_t *slot, int64_t first,
-                          int64_t last, const double *low, const double *high, double factor,
-                          struct index_list *list)
-{
-    if (slot != NULL && dim == 2) {
-        query_run(level, 2, slot, first, last, low, high, factor, list);
-    } else if (slot != NULL) {
-        query_run(level, 3, slot, first, last, low, high, factor, list);
-    } else if (dim == 2) {
-        query_run(level, 2, NULL, first, last, low, high, factor, list);
-    } else {
-        query_run(level, 3, NULL, first, last, low, high, factor, list);
-    }
-}
-
-enum status point_grid_list_places(const struct point_grid *grid, const struct point_grid_level *level,
-                                   const double *low, const double *high, double factor,
-                                   struct index_list *list, struct error *error)
+/* Append the nodes of a level whose supports meet the box, in no particular order. */
+static enum status query_level(const struct point_grid *grid, const struct point_grid_level *level,
+                               const double *low, const double *high, double factor, struct index_list *list,
+                               struct error *error)
 {
     int64_t from[3] = {0, 0, 0}, to[3] = {0, 0, 0};
     double reach = level->largest_radius * factor * (1.0 + 1e-9); /* for round-off at the edges of bins */
@@ -265,7 +184,11 @@ enum status point_grid_list_places(const struct point_grid *grid, const struct p
             int64_t row = (k * level->bins[1] + j) * level->bins[0];
             int64_t first = level->start[row + from[0]], last = level->start[row + to[0] + 1];
             RETURN_IF_ERROR(index_list_reserve(list, last - first, error));
-            query_any_run(level, grid->dim, NULL, first, last, low, high, factor, list);
+            if (grid->dim == 2) {
+                query_run(level, 2, first, last, low, high, factor, list);
+            } else {
+                query_run(level, 3, first, last, low, high, factor, list);
+            }
         }
     }
     return STATUS_OK;
@@ -276,12 +199,8 @@ enum status point_grid_query_box(const struct point_grid *grid, const double *lo
 {
     int64_t first = list->count;
     for (int l = 0; l < grid->level_count; l++) {
-        int64_t before = list->count;
         if (grid->level[l].start != NULL) {
-            RETURN_IF_ERROR(point_grid_list_places(grid, &grid->level[l], low, high, factor, list, error));
-        }
-        for (int64_t i = before; i < list->count; i++) {
-            list->index[i] = grid->level[l].node[list->index[i]];
+            RETURN_IF_ERROR(query_level(grid, &grid->level[l], low, high, factor, list, error));
         }
     }
     if (list->count > first) {
@@ -290,42 +209,8 @@ enum status point_grid_query_box(const struct point_grid *grid, const double *lo
     return STATUS_OK;
 }
 
-/* united[count_a + count_b]: the numbers of two ascending lists, which have none in common. */
-static void unite(const int32_t *a, int64_t count_a, const int32_t *b, int64_t count_b, int32_t *united)
-{
-    const int32_t *end_a = a + count_a, *end_b = b + count_b;
-    while (a < end_a || b < end_b) {
-        *united++ = b == end_b || (a < end_a && *a < *b) ? *a++ : *b++;
-    }
-}
-
-/* The same for a point, by the lists of supports that meet its bin. */
-static enum status query_touching(const struct point_grid *grid, const double *x, double factor,
-                                  struct index_list *list, struct error *error)
-{
-    int64_t first = list->count;
-    for (int l = 0; l < grid->level_count; l++) {
-        const struct point_grid_level *level = &grid->level[l];
-        int64_t before = list->count, bin = level->start != NULL ? bin_of(grid, level, x) : 0;
-        int64_t from = level->touch_start[bin], to = level->touch_start[bin + 1];
-        RETURN_IF_ERROR(index_list_reserve(list, before - first + 2 * (to - from), error));
-        query_any_run(level, grid->dim, level->touch, from, to, x, x, factor, list);
-        int32_t *index = list->index + first, *own = list->index + before, *end = list->index + list->count;
-        for (int32_t *i = own; i < end; i++) {
-            *i = level->node[*i];
-        }
-        if (own > index && end > own) {
-            unite(index, own - index, own, end - own, end); /* no node is in two levels */
-            memcpy(index, end, (size_t)(end - index) * sizeof *index);
-        }
-    }
-    return STATUS_OK;
-}
-
 enum status point_grid_query(const struct point_grid *grid, const double *x, double factor,
                              struct index_list *list, struct error *error)
 {
-    return factor <= 1.0 && grid->level[0].touch != NULL
-               ? query_touching(grid, x, factor, list, error)
-               : point_grid_query_box(grid, x, x, factor, list, error);
+    return point_grid_query_box(grid, x, x, factor, list, error);
 }

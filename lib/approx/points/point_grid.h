@@ -14,11 +14,9 @@ struct point_grid_level {
     double per_length;     /* 1 / bin */
     int64_t bins[3];       /* bins along each axis (1 beyond dim) */
     double largest_radius;
-    int64_t *start;       /* CSR over bins: bins[0]*bins[1]*bins[2] + 1, first axis fastest */
-    int32_t *node;        /* nodes of each bin, ascending */
-    double *place;        /* for each of `node`: coordinates and radius, dim + 1 */
-    int64_t *touch_start; /* CSR over bins, NULL without point_grid_list_touching: */
-    int32_t *touch; /* the places in `node` of the nodes whose supports meet the bin, ascending by node */
+    int64_t *start; /* CSR over bins: bins[0]*bins[1]*bins[2] + 1, first axis fastest */
+    int32_t *node;  /* nodes of each bin, ascending */
+    double *place;  /* for each of `node`: coordinates and radius, dim + 1 */
 };
 
 /* Node coordinates and radii are the caller's and must outlive the grid. */
@@ -36,9 +34,6 @@ MUST_CHECK enum status point_grid_build(struct point_grid *grid, int dim, int64_
                                         const double *radius, struct error *error);
 void point_grid_free(struct point_grid *grid);
 
-/* List the supports that meet each bin. This speeds up many queries of points with a factor of at most 1. */
-MUST_CHECK enum status point_grid_list_touching(struct point_grid *grid, struct error *error);
-
 /* A growing list of node indices. */
 struct index_list {
     int32_t *index;
@@ -55,13 +50,6 @@ MUST_CHECK enum status point_grid_query(const struct point_grid *grid, const dou
 MUST_CHECK enum status point_grid_query_box(const struct point_grid *grid, const double *low,
                                             const double *high, double factor, struct index_list *list,
                                             struct error *error);
-
-/* Append the places in level->node of the nodes whose supports, of `factor` times their radius, meet the box,
- * in no particular order. */
-MUST_CHECK enum status point_grid_list_places(const struct point_grid *grid,
-                                              const struct point_grid_level *level, const double *low,
-                                              const double *high, double factor, struct index_list *list,
-                                              struct error *error);
 
 /* Room for `count` more indices. */
 MUST_CHECK enum status index_list_reserve(struct index_list *list, int64_t count, struct error *error);

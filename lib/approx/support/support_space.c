@@ -5,7 +5,6 @@ enum status support_space_build(const struct support_options *options, const str
 {
     *space = (struct support_space){.cells = *cells, .radius = radius};
     RETURN_IF_ERROR(point_grid_build(&space->grid, cells->dim, cells->node_count, cells->x, radius, error));
-    RETURN_IF_ERROR(point_grid_list_touching(&space->grid, error));
     return options->visibility == VISIBILITY_CELLS && cells->count > 0
                ? visibility_build(cells, options->side, &space->grid, &space->visibility, error)
                : STATUS_OK;
