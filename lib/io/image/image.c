@@ -15,36 +15,47 @@ const struct nifti_type image_types[IMAGE_TYPES] = {
      1,
      0,
      UINT8_MAX,
-     {"uint8|uchar|unsigned char|uint8_t", "MET_UCHAR|MET_UCHAR_ARRAY"}},
-    {IMAGE_INT8, "int8", 1, 1, INT8_MIN, INT8_MAX, {"int8|signed char|int8_t", "MET_CHAR|MET_CHAR_ARRAY"}},
+     {"uint8|uchar|unsigned char|uint8_t", "MET_UCHAR|MET_UCHAR_ARRAY", "UInt8",
+      "unsigned_char|vtktypeuint8"}},
+    {IMAGE_INT8,
+     "int8",
+     1,
+     1,
+     INT8_MIN,
+     INT8_MAX,
+     {"int8|signed char|int8_t", "MET_CHAR|MET_CHAR_ARRAY", "Int8", "char|vtktypeint8"}},
     {IMAGE_INT16,
      "int16",
      2,
      1,
      INT16_MIN,
      INT16_MAX,
-     {"int16|short|short int|signed short|signed short int|int16_t", "MET_SHORT|MET_SHORT_ARRAY"}},
+     {"int16|short|short int|signed short|signed short int|int16_t", "MET_SHORT|MET_SHORT_ARRAY", "Int16",
+      "short|vtktypeint16"}},
     {IMAGE_UINT16,
      "uint16",
      2,
      1,
      0,
      UINT16_MAX,
-     {"uint16|ushort|unsigned short|unsigned short int|uint16_t", "MET_USHORT|MET_USHORT_ARRAY"}},
+     {"uint16|ushort|unsigned short|unsigned short int|uint16_t", "MET_USHORT|MET_USHORT_ARRAY", "UInt16",
+      "unsigned_short|vtktypeuint16"}},
     {IMAGE_INT32,
      "int32",
      4,
      1,
      INT32_MIN,
      INT32_MAX,
-     {"int32|int|signed int|int32_t", "MET_INT|MET_LONG|MET_INT_ARRAY|MET_LONG_ARRAY"}},
+     {"int32|int|signed int|int32_t", "MET_INT|MET_LONG|MET_INT_ARRAY|MET_LONG_ARRAY", "Int32",
+      "int|vtktypeint32|vtkIdType"}},
     {IMAGE_UINT32,
      "uint32",
      4,
      1,
      0,
      UINT32_MAX,
-     {"uint32|uint|unsigned int|uint32_t", "MET_UINT|MET_ULONG|MET_UINT_ARRAY|MET_ULONG_ARRAY"}},
+     {"uint32|uint|unsigned int|uint32_t", "MET_UINT|MET_ULONG|MET_UINT_ARRAY|MET_ULONG_ARRAY", "UInt32",
+      "unsigned_int|vtktypeuint32"}},
     {IMAGE_INT64,
      "int64",
      8,
@@ -52,7 +63,7 @@ const struct nifti_type image_types[IMAGE_TYPES] = {
      -9223372036854774784.0,
      9223372036854774784.0,
      {"int64|longlong|long long|long long int|signed long long|signed long long int|int64_t",
-      "MET_LONG_LONG|MET_LONG_LONG_ARRAY"}},
+      "MET_LONG_LONG|MET_LONG_LONG_ARRAY", "Int64", "long|vtktypeint64"}},
     {IMAGE_UINT64,
      "uint64",
      8,
@@ -60,9 +71,9 @@ const struct nifti_type image_types[IMAGE_TYPES] = {
      0,
      18446744073709549568.0,
      {"uint64|ulonglong|unsigned long long|unsigned long long int|uint64_t",
-      "MET_ULONG_LONG|MET_ULONG_LONG_ARRAY"}},
-    {IMAGE_FLOAT32, "float32", 4, 1, 0, 0, {"float", "MET_FLOAT|MET_FLOAT_ARRAY"}},
-    {IMAGE_FLOAT64, "float64", 8, 1, 0, 0, {"double", "MET_DOUBLE|MET_DOUBLE_ARRAY"}},
+      "MET_ULONG_LONG|MET_ULONG_LONG_ARRAY", "UInt64", "unsigned_long|vtktypeuint64"}},
+    {IMAGE_FLOAT32, "float32", 4, 1, 0, 0, {"float", "MET_FLOAT|MET_FLOAT_ARRAY", "Float32", "float"}},
+    {IMAGE_FLOAT64, "float64", 8, 1, 0, 0, {"double", "MET_DOUBLE|MET_DOUBLE_ARRAY", "Float64", "double"}},
     {IMAGE_RGB24, "RGB24", 1, 3, 0, UINT8_MAX, {"uint8", "MET_UCHAR"}},
     {IMAGE_RGBA32, "RGBA32", 1, 4, 0, UINT8_MAX, {"uint8", "MET_UCHAR"}},
 };
@@ -77,14 +88,24 @@ const struct nifti_type *nifti_type(int code)
     return NULL;
 }
 
+const struct nifti_type *nifti_type_named(enum number_format format, const char *name)
+{
+    for (int t = 0; t < IMAGE_TYPES; t++) {
+        if (image_types[t].names[format] != NULL && header_is(image_types[t].names[format], name)) {
+            return &image_types[t];
+        }
+    }
+    return NULL;
+}
+
 void nifti_get(const struct nifti_type *type, const unsigned char *bytes, bool swapped, size_t count,
                double *values)
 {
     int unused = 64 - 8 * type->bytes, code = type->code;
     bool negative = type->least < 0;
     for (size_t i = 0; i < count; i++, bytes += (64 - unused) / 8) {
-        uint64_t word;
-        memcpy(&word, bytes, sizeof word);
+        uint64_t word = 0;
+        memcpy(&word, bytes, (count - i) * (size_t)type->bytes >= 8 ? 8 : (size_t)type->bytes);
         word = swapped ? __builtin_bswap64(word) : word << unused; /* the number is in its upper bytes */
         if (code == IMAGE_FLOAT32) {
             uint32_t high = (uint32_t)(word >> 32);

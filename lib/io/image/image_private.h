@@ -24,17 +24,22 @@ struct nifti_type {
     int bytes;            /* of one component */
     int components;       /* of the type itself */
     double least, most;   /* of an integer type; 0, 0: floating point */
-    const char *names[2]; /* in headers of NRRD and of MetaImage, A|B; the first one is written. Those of a
-                             colour are those of its components, whose type comes first. */
+    const char *names[4]; /* A|B, in headers of NRRD and of MetaImage, where the first one is written, in VTU
+                             and in legacy files of VTK. Those of a colour are those of its components, whose
+                             type comes first. */
 };
+enum number_format { NUMBERS_OF_NRRD, NUMBERS_OF_METAIMAGE, NUMBERS_OF_VTU, NUMBERS_OF_VTK };
 enum { IMAGE_TYPES = 12 };
 extern const struct nifti_type image_types[IMAGE_TYPES];
 
 /* NULL for a type that is not read. */
 const struct nifti_type *nifti_type(int code);
+const struct nifti_type *nifti_type_named(enum number_format format, const char *name);
 
-/* Numbers of this type from their bytes, in the other byte order if `swapped`. Eight bytes are read for each:
- * up to seven behind the last one are to be there. */
+/* Whether a word is one of the names A|B|..., in any case. */
+bool header_is(const char *names, const char *word);
+
+/* Numbers of this type from their bytes, in the other byte order if `swapped`. */
 void nifti_get(const struct nifti_type *type, const unsigned char *bytes, bool swapped, size_t count,
                double *values);
 

@@ -120,13 +120,11 @@ enum status header_integer(const struct text_header *header, int64_t least, int6
 static enum status take_type(const struct text_header *header, struct image_layout *layout,
                              struct error *error)
 {
-    for (int t = 0; t < IMAGE_TYPES; t++) {
-        if (header_is(image_types[t].names[header->separator == '='], header->value)) {
-            layout->type = &image_types[t];
-            return STATUS_OK;
-        }
-    }
-    return header_fail(header, "integers of 8 to 64 bits and floats of 32 and 64 are read", error);
+    layout->type =
+        nifti_type_named(header->separator == '=' ? NUMBERS_OF_METAIMAGE : NUMBERS_OF_NRRD, header->value);
+    return layout->type != NULL
+               ? STATUS_OK
+               : header_fail(header, "integers of 8 to 64 bits and floats of 32 and 64 are read", error);
 }
 
 /* The value is one of the words of the field: its number. */

@@ -26,9 +26,6 @@ MUST_CHECK enum status header_line(struct text_header *header, struct error *err
 /* Read the next field; comment lines of NRRD are skipped. */
 MUST_CHECK enum status header_next(struct text_header *header, struct error *error);
 
-/* Whether a word is one of the names A|B|..., in any case. */
-bool header_is(const char *names, const char *word);
-
 /* The keys of a field, A|B, and what takes its value: a function, NULL where only whether it is there counts;
  * or a place in the context: of a whole number (int64_t) from least to most, of numbers (double), one for
  * each dimension or pair of these; of an image_layout, for the type of the values or their file; of the

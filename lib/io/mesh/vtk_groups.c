@@ -4,6 +4,7 @@
 
 #include "base/lists.h"
 
+#include <float.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -12,13 +13,14 @@
 
 static bool is_numbering(struct vtk_input *v, const struct vtk_array *array)
 {
+    _Static_assert(sizeof *array->value == sizeof(int64_t), "bits of values are compared");
     struct msh_reader *r = v->r;
     SCRATCH int64_t *value = NULL;
     MSH_NEW(r, &value, array->count);
     if (r->status != STATUS_OK || array->count <= FEW_CELLS) {
         return false;
     }
-    memcpy(value, array->whole, (size_t)array->count * sizeof *value);
+    memcpy(value, array->value, (size_t)array->count * sizeof *value);
     return sort_distinct(array->count, value) == array->count;
 }
 
@@ -78,23 +80,34 @@ static void name_region(const struct vtk_input *v, const struct vtk_array *array
              dim < most ? "_" : "", value);
     for (int64_t i = 0; i < v->count && strcmp(array->name, "cells.region") == 0; i++) {
         const struct vtk_array *field = &v->arrays[i];
-        if (field->kind == VTK_OF_FIELD && field->count == 1 && field->whole[0] == value) {
+        if (field->kind == VTK_OF_FIELD && field->count == 1 && vtk_whole(field->value[0]) == value) {
             snprintf(name, size, "%s", field->name + strlen("region."));
         }
     }
 }
 
+/* The whole number that a real one is, to single precision. */
+static int64_t near_whole(struct msh_reader *r, const char *name, double number)
+{
+    double rounding = 2.0 * (double)FLT_EPSILON * (1.0 + fabs(number));
+    if (!(fabs(number - rint(number)) <= rounding && fabs(number) < 9e15)) {
+        msh_fail(r, "%s: %.9g is not a whole number", name, number);
+        return 0;
+    }
+    return (int64_t)rint(number);
+}
+
 /* The keys of the groups of all values, value[count], by value and dimension: key[4 * count], 0 where no cell
  * is. Groups are named in ascending order of the values. */
-static void name_regions(struct vtk_input *v, const struct vtk_array *array, int64_t count,
-                         const int64_t value[], int64_t key[])
+static void name_regions(struct vtk_input *v, const struct vtk_array *array, const int64_t of_cell[],
+                         int64_t count, const int64_t value[], int64_t key[])
 {
     bool zero_is_none = strcmp(array->name, "gmsh:physical") == 0;
     int most = 0;
     for (int64_t c = 0; c < v->cell_count; c++) {
         int dim = msh_type(v->r->msh->elements[c].type).dim;
         most = dim > most ? dim : most;
-        key[4 * first_from(value, 0, count, array->whole[c]) + dim] = -1;
+        key[4 * first_from(value, 0, count, of_cell[c]) + dim] = -1;
     }
     for (int64_t k = 0; k < 4 * count; k++) {
         char name[256];
@@ -110,21 +123,24 @@ static void name_regions(struct vtk_input *v, const struct vtk_array *array, int
 static void add_regions(struct vtk_input *v, const struct vtk_array *array)
 {
     struct msh_reader *r = v->r;
-    SCRATCH int64_t *value = NULL, *key = NULL;
+    SCRATCH int64_t *of_cell = NULL, *value = NULL, *key = NULL;
     if (array->count != v->cell_count) {
         msh_fail(r, "%s: %jd numbers, not one for each of %jd cells", array->name, array->count,
                  v->cell_count);
     }
+    MSH_NEW(r, &of_cell, v->cell_count);
     MSH_NEW(r, &value, v->cell_count);
     MSH_NEW(r, &key, 4 * v->cell_count);
+    for (int64_t c = 0; r->status == STATUS_OK && c < v->cell_count; c++) {
+        value[c] = of_cell[c] = near_whole(r, array->name, array->value[c]);
+    }
     if (r->status != STATUS_OK) {
         return;
     }
-    memcpy(value, array->whole, (size_t)v->cell_count * sizeof *value);
     int64_t count = sort_distinct(v->cell_count, value);
-    name_regions(v, array, count, value, key);
+    name_regions(v, array, of_cell, count, value, key);
     for (int64_t c = 0; c < v->cell_count; c++) {
-        int64_t place = first_from(value, 0, count, array->whole[c]);
+        int64_t place = first_from(value, 0, count, of_cell[c]);
         v->r->msh->elements[c].key = key[4 * place + msh_type(v->r->msh->elements[c].type).dim];
     }
     input_note(v->r, "the regions are those of the cells' array '%s'", array->name);
@@ -145,7 +161,7 @@ static void add_sets(struct vtk_input *v)
                      v->point_count);
         }
         for (int64_t n = 0; v->r->status == STATUS_OK && n < v->point_count; n++) {
-            if (array->whole[n] != 0) {
+            if (vtk_whole(array->value[n]) != 0) {
                 msh_add_element(v->r, MSH_NO_TAG, INPUT_POINT, &n, key);
             }
         }

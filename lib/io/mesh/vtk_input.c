@@ -11,52 +11,26 @@
 
 /* ---- arrays ---- */
 
-const struct vtk_type *vtk_find_type(const char *name)
-{
-    static const struct vtk_type types[] = {
-        {"Int8", "char", 1, true, true},      {"UInt8", "unsigned_char", 1, true, false},
-        {"Int16", "short", 2, true, true},    {"UInt16", "unsigned_short", 2, true, false},
-        {"Int32", "int", 4, true, true},      {"UInt32", "unsigned_int", 4, true, false},
-        {"Int64", "long", 8, true, true},     {"UInt64", "unsigned_long", 8, true, false},
-        {"Float32", "float", 4, false, true}, {"Float64", "double", 8, false, true},
-        {"", "vtktypeint8", 1, true, true},   {"", "vtktypeuint8", 1, true, false},
-        {"", "vtktypeint16", 2, true, true},  {"", "vtktypeuint16", 2, true, false},
-        {"", "vtktypeint32", 4, true, true},  {"", "vtktypeuint32", 4, true, false},
-        {"", "vtktypeint64", 8, true, true},  {"", "vtktypeuint64", 8, true, false},
-        {"", "vtkIdType", 4, true, true},     {"String", "string", 0, false, false},
-    };
-    for (size_t i = 0; i < sizeof types / sizeof *types; i++) {
-        if ((name[0] != '\0' && strcmp(name, types[i].xml) == 0) || strcasecmp(name, types[i].legacy) == 0) {
-            return &types[i];
-        }
-    }
-    return NULL;
-}
-
 static bool begins(const char *name, const char *begin)
 {
     return strncmp(name, begin, strlen(begin)) == 0;
 }
 
-/* The array that is asked for as that of the regions, whose numbers may be of a real type. */
-static bool is_asked(const struct msh_reader *r, const struct vtk_array *array)
+bool vtk_is_wanted(struct vtk_input *v, const struct vtk_array *array, const struct nifti_type *type)
 {
-    return array->kind == VTK_OF_CELLS && r->region_array != NULL &&
-           strcmp(array->name, r->region_array) == 0;
-}
-
-bool vtk_is_wanted(struct vtk_input *v, const struct vtk_array *array, const struct vtk_type *type)
-{
-    bool any = type->is_whole || (type->size > 0 && is_asked(v->r, array));
-    bool whole = any && array->components == 1 && !begins(array->name, "vtk");
+    const char *asked = v->r->region_array; /* its numbers may be of a real type */
+    bool is_asked = array->kind == VTK_OF_CELLS && asked != NULL && strcmp(array->name, asked) == 0;
+    bool is_whole = type != NULL && type->most > type->least;
+    bool whole =
+        (is_whole || (type != NULL && is_asked)) && array->components == 1 && !begins(array->name, "vtk");
     const char *dot = strchr(array->name, '.'); /* of a name that is not empty */
     bool set = (begins(array->name, "set.") || begins(array->name, "facets.")) && dot[1] != '\0';
     bool of_grid = array->kind >= VTK_POINTS && array->kind <= VTK_TYPES;
     bool wanted =
         of_grid || (whole && (array->kind == VTK_OF_CELLS || (array->kind == VTK_OF_POINTS && set) ||
                               (array->kind == VTK_OF_FIELD && begins(array->name, "region."))));
-    if (of_grid && (type->size == 0 || type->is_whole == (array->kind == VTK_POINTS))) {
-        msh_fail(v->r, "numbers of a type that has no place here");
+    if (of_grid && (type == NULL || is_whole == (array->kind == VTK_POINTS))) {
+        msh_fail(v->r, "%s: numbers of a type that has no place here", array->name);
     } else if (!wanted) {
         input_leave_out(v->r, array->name);
     }
@@ -73,81 +47,26 @@ struct vtk_array *vtk_add(struct vtk_input *v, const struct vtk_array *array, in
     struct vtk_array *added = &v->arrays[v->count++];
     *added = *array;
     added->count = count;
-    added->real = NULL;
-    added->whole = NULL;
-    if (array->kind == VTK_POINTS) {
-        MSH_NEW(r, &added->real, count);
-    } else {
-        MSH_NEW(r, &added->whole, count);
-    }
+    added->value = NULL;
+    MSH_NEW(r, &added->value, count);
     return r->status == STATUS_OK ? added : NULL;
 }
 
-/* The whole number in `size` bytes, the least first; those beyond int64_t become -1. */
-static int64_t whole_of(const struct vtk_type *type, const unsigned char *byte)
+void vtk_fill_text(struct msh_reader *r, struct vtk_array *array, const struct nifti_type *type,
+                   const char **at, const char *end)
 {
-    uint64_t bits = 0;
-    for (int k = type->size - 1; k >= 0; k--) {
-        bits = bits << 8 | byte[k];
-    }
-    if (type->is_signed && type->size < 8 && bits >> (8 * type->size - 1) != 0) {
-        bits |= UINT64_MAX << (8 * type->size);
-    }
-    return type->is_signed || bits <= INT64_MAX ? (int64_t)bits : -1;
-}
-
-/* The whole number that a real one is, to single precision. */
-static int64_t near_whole(struct msh_reader *r, const char *name, double number)
-{
-    double whole = rint(number), rounding = 2.0 * (double)FLT_EPSILON * (1.0 + fabs(number));
-    if (!(fabs(number - whole) <= rounding && fabs(whole) < 1e15)) {
-        msh_fail(r, "%s: %.9g is not a whole number", name, number);
-        return 0;
-    }
-    return (int64_t)whole;
-}
-
-void vtk_fill_binary(struct msh_reader *r, struct vtk_array *array, const struct vtk_type *type, bool swap,
-                     const char *bytes)
-{
-    for (int64_t i = 0; r->status == STATUS_OK && i < array->count; i++) {
-        unsigned char byte[8];
-        for (int k = 0; k < type->size; k++) {
-            byte[k] = (unsigned char)bytes[i * type->size + (swap ? type->size - 1 - k : k)];
-        }
-        if (type->is_whole) {
-            array->whole[i] = whole_of(type, byte);
-            continue;
-        }
-        float single;
-        double number;
-        if (type->size == 4) {
-            memcpy(&single, byte, sizeof single);
-            number = (double)single;
-        } else {
-            memcpy(&number, byte, sizeof number);
-        }
-        if (array->real != NULL) {
-            array->real[i] = number;
-        } else {
-            array->whole[i] = near_whole(r, array->name, number);
-        }
-    }
-}
-
-void vtk_fill_text(struct msh_reader *r, struct vtk_array *array, const char **at, const char *end)
-{
+    bool whole = type->most > type->least;
     for (int64_t i = 0; r->status == STATUS_OK && i < array->count; i++) {
         int64_t length;
         const char *word = input_word(at, end, ',', &length);
         if (word == NULL) {
             msh_fail(r, "%s: only %jd of %jd numbers", array->name, i, array->count);
-        } else if (array->real != NULL) {
-            array->real[i] = input_real(r, array->name, word, length);
-        } else if (is_asked(r, array)) {
-            array->whole[i] = near_whole(r, array->name, input_real(r, array->name, word, length));
-        } else {
-            array->whole[i] = input_whole(r, array->name, word, length, INT64_MIN + 1, INT64_MAX);
+            return;
+        }
+        array->value[i] = input_real(r, array->name, word, length);
+        if (whole && array->value[i] != rint(array->value[i])) {
+            msh_fail(r, "%s: '%.*s' is not a whole number", array->name, length < 64 ? (int)length : 64,
+                     word);
         }
     }
 }
@@ -180,11 +99,11 @@ static void add_nodes(struct vtk_input *v)
     const struct vtk_array *x = find_array(v, VTK_POINTS, "points", 3 * v->point_count);
     for (int64_t n = 0; x != NULL && v->r->status == STATUS_OK && n < v->point_count; n++) {
         for (int k = 0; k < 3; k++) {
-            if (!isfinite(x->real[3 * n + k])) {
+            if (!isfinite(x->value[3 * n + k])) {
                 msh_fail(v->r, "point %jd: a coordinate is not finite", n);
             }
         }
-        msh_add_node(v->r, n, &x->real[3 * n]);
+        msh_add_node(v->r, n, &x->value[3 * n]);
     }
 }
 
@@ -211,7 +130,7 @@ static void swap_nodes(int64_t *a, int64_t *b)
     *b = kept;
 }
 
-static void add_cell(struct vtk_input *v, int64_t c, int64_t number, int64_t count, const int64_t nodes[])
+static void add_cell(struct vtk_input *v, int64_t c, int64_t number, int64_t count, const double nodes[])
 {
     enum { PIXEL = 8, VOXEL = 11 };
     int64_t node[MSH_MOST_NODES];
@@ -223,7 +142,9 @@ static void add_cell(struct vtk_input *v, int64_t c, int64_t number, int64_t cou
                  c, number, count);
         return;
     }
-    memcpy(node, nodes, (size_t)count * sizeof *nodes);
+    for (int64_t k = 0; k < count; k++) {
+        node[k] = vtk_whole(nodes[k]);
+    }
     if (number == PIXEL || number == VOXEL) {
         swap_nodes(&node[2], &node[3]);
     }
@@ -241,13 +162,14 @@ static void add_cells(struct vtk_input *v)
     const struct vtk_array *type = find_array(v, VTK_TYPES, "types", v->cell_count);
     int64_t first = 0;
     for (int64_t c = 0; r->status == STATUS_OK && c < v->cell_count; c++) {
-        if (end->whole[c] < first || end->whole[c] > connectivity->count) {
-            msh_fail(r, "cell %jd: its offset %jd is not within [%jd, %jd]", c, end->whole[c], first,
+        int64_t behind = vtk_whole(end->value[c]);
+        if (behind < first || behind > connectivity->count) {
+            msh_fail(r, "cell %jd: its offset %jd is not within [%jd, %jd]", c, behind, first,
                      connectivity->count);
             return;
         }
-        add_cell(v, c, type->whole[c], end->whole[c] - first, &connectivity->whole[first]);
-        first = end->whole[c];
+        add_cell(v, c, vtk_whole(type->value[c]), behind - first, &connectivity->value[first]);
+        first = behind;
     }
 }
 
@@ -259,7 +181,7 @@ void vtk_build(struct vtk_input *v)
     add_cells(v);
     vtk_add_groups(v);
     for (int64_t i = 0; i < v->count; i++) {
-        FREE_ALL(v->arrays[i].real, v->arrays[i].whole);
+        free(v->arrays[i].value);
     }
     free(v->arrays);
 }

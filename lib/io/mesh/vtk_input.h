@@ -3,17 +3,10 @@
  */
 #pragma once
 
+#include "io/image/image_private.h"
 #include "io/mesh/msh_private.h"
 
-/* A type of numbers, by its names in VTU and in legacy files. */
-struct vtk_type {
-    const char *xml, *legacy;
-    int size; /* bytes; 0: texts, which are stepped over */
-    bool is_whole, is_signed;
-};
-
-/* NULL if there is no type of that name. */
-const struct vtk_type *vtk_find_type(const char *name);
+#include <math.h>
 
 /* What arrays are of. */
 enum vtk_kind {
@@ -31,8 +24,7 @@ struct vtk_array {
     enum vtk_kind kind;
     char name[INPUT_NAME + 1];
     int64_t components, count; /* count: of all its numbers */
-    double *real;              /* count; of points */
-    int64_t *whole;            /* count; of all else */
+    double *value;             /* count */
 };
 
 struct vtk_input {
@@ -42,17 +34,22 @@ struct vtk_input {
     struct vtk_array *arrays;
 };
 
-/* Whether an array of that name, kind and type is of use: else its numbers need not be read. Where it may be
- * missed, it is noted as left out. */
-bool vtk_is_wanted(struct vtk_input *v, const struct vtk_array *array, const struct vtk_type *type);
+/* Whether an array of that name, kind and type (NULL: no numbers) is of use: else it need not be read. Where
+ * it may be missed, it is noted as left out. */
+bool vtk_is_wanted(struct vtk_input *v, const struct vtk_array *array, const struct nifti_type *type);
 
 /* Add an array of `count` numbers, zeros as yet; NULL after a failure. */
 struct vtk_array *vtk_add(struct vtk_input *v, const struct vtk_array *array, int64_t count);
 
-/* Fill an array from values as they lie in a file, of the other byte order or not; from words of text. */
-void vtk_fill_binary(struct msh_reader *r, struct vtk_array *array, const struct vtk_type *type, bool swap,
-                     const char *bytes);
-void vtk_fill_text(struct msh_reader *r, struct vtk_array *array, const char **at, const char *end);
+/* Fill an array from words of text. */
+void vtk_fill_text(struct msh_reader *r, struct vtk_array *array, const struct nifti_type *type,
+                   const char **at, const char *end);
+
+/* The whole number that a number of the grid is; -1: it is none, or too large. */
+static inline int64_t vtk_whole(double number)
+{
+    return fabs(number) < 9e15 && number == rint(number) ? (int64_t)number : -1;
+}
 
 /* Where the bytes of an array of a VTU file are, and how they lie there. */
 struct vtu_source {

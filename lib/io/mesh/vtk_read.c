@@ -42,11 +42,15 @@ static int64_t next_count(struct msh_reader *r, const char **at, const char *end
     return input_whole(r, "a count", word != NULL ? word : "", length, least, INT32_MAX);
 }
 
-static const struct vtk_type *next_type(struct msh_reader *r, const char **at, const char *end)
+/* The type of texts, which are stepped over. */
+static const struct nifti_type text_type;
+
+static const struct nifti_type *next_type(struct msh_reader *r, const char **at, const char *end)
 {
     char name[32];
     copy_word(r, at, end, name, sizeof name);
-    const struct vtk_type *type = vtk_find_type(name);
+    const struct nifti_type *type =
+        strcasecmp(name, "string") == 0 ? &text_type : nifti_type_named(NUMBERS_OF_VTK, name);
     if (type == NULL) {
         msh_fail(r, "numbers of type '%s' are not read", name);
     }
@@ -104,28 +108,28 @@ static void skip_texts(struct legacy *l, int64_t count)
 
 /* Read `count` numbers into an array of the grid, or step over them. */
 static struct vtk_array *read_numbers(struct legacy *l, const struct vtk_array *array,
-                                      const struct vtk_type *type, int64_t count)
+                                      const struct nifti_type *type, int64_t count)
 {
     struct msh_reader *r = l->v.r;
     struct vtk_array *added = NULL;
-    int64_t left = r->end - r->at, size = type->size == 0 ? 1 : l->binary ? type->size : 2, length;
+    int64_t left = r->end - r->at, size = type->bytes == 0 ? 1 : l->binary ? type->bytes : 2, length;
     if (r->status != STATUS_OK || count > (left + !l->binary) / size) {
         msh_fail(r, "%jd numbers cannot be in the %jd bytes that are left", count, left);
         return NULL;
     }
-    if (vtk_is_wanted(&l->v, array, type)) {
+    if (vtk_is_wanted(&l->v, array, type->bytes > 0 ? type : NULL)) {
         added = vtk_add(&l->v, array, count);
     }
-    if (type->size == 0) {
+    if (type->bytes == 0) {
         skip_texts(l, count);
     } else if (l->binary) {
         if (added != NULL) {
-            vtk_fill_binary(r, added, type, true, r->at);
+            nifti_get(type, (const unsigned char *)r->at, true, (size_t)count, added->value);
         }
         r->at += count * size;
         r->at += r->at < r->end && *r->at == '\n';
     } else if (added != NULL) {
-        vtk_fill_text(r, added, &r->at, r->end);
+        vtk_fill_text(r, added, type, &r->at, r->end);
         if (r->status == STATUS_OK && count > 0 && r->at == r->end) {
             msh_fail(r, "%s: the file ends without a line's end: cut within its last number?", array->name);
         }
@@ -150,7 +154,7 @@ static struct vtk_array *read_list(struct legacy *l, enum vtk_kind kind, const c
         msh_fail(l->v.r, "no %s: the file is truncated", name);
     }
     snprintf(array.name, sizeof array.name, "%s", name);
-    const struct vtk_type *type = l->v.r->status == STATUS_OK ? next_type(l->v.r, &at, end) : NULL;
+    const struct nifti_type *type = l->v.r->status == STATUS_OK ? next_type(l->v.r, &at, end) : NULL;
     return type != NULL ? read_numbers(l, &array, type, count) : NULL;
 }
 
@@ -161,9 +165,9 @@ static void split_cells(struct legacy *l)
     struct vtk_array offsets = {.kind = VTK_OFFSETS, .components = 1, .name = "offsets"};
     int64_t place = l->v.count - 1, from = 0, to = 0;
     struct vtk_array *end = vtk_add(&l->v, &offsets, l->v.cell_count);
-    int64_t *list = end != NULL ? l->v.arrays[place].whole : NULL;
+    double *list = end != NULL ? l->v.arrays[place].value : NULL;
     for (int64_t c = 0; r->status == STATUS_OK && c < l->v.cell_count; c++) {
-        int64_t left = l->v.arrays[place].count - from - 1, count = left >= 0 ? list[from++] : -1;
+        int64_t left = l->v.arrays[place].count - from - 1, count = left >= 0 ? vtk_whole(list[from++]) : -1;
         if (count < 0 || count > left) {
             msh_fail(r, "cell %jd: more points than there are numbers", c);
             return;
@@ -171,7 +175,7 @@ static void split_cells(struct legacy *l)
         memmove(&list[to], &list[from], (size_t)count * sizeof *list);
         from += count;
         to += count;
-        end->whole[c] = to;
+        end->value[c] = (double)to;
     }
     if (from < l->v.arrays[place].count) {
         msh_fail(r, "%jd numbers, where %jd cells take %jd", l->v.arrays[place].count, l->v.cell_count, from);
@@ -184,11 +188,11 @@ static void read_lists(struct legacy *l, int64_t count, int64_t size)
 {
     struct vtk_array *offsets = read_list(l, VTK_OFFSETS, "OFFSETS", count);
     if (offsets != NULL && offsets->count > 0) { /* without the first, which is 0 */
-        if (offsets->whole[0] != 0) {
-            msh_fail(l->v.r, "OFFSETS begin with %jd, not with 0", offsets->whole[0]);
+        if (offsets->value[0] != 0.0) {
+            msh_fail(l->v.r, "OFFSETS begin with %g, not with 0", offsets->value[0]);
         }
         offsets->count--;
-        memmove(offsets->whole, offsets->whole + 1, (size_t)offsets->count * sizeof *offsets->whole);
+        memmove(offsets->value, offsets->value + 1, (size_t)offsets->count * sizeof *offsets->value);
     }
     l->v.cell_count = count > 0 ? count - 1 : 0;
     (void)read_list(l, VTK_CONNECTIVITY, "CONNECTIVITY", size);
@@ -211,7 +215,7 @@ static void read_cells(struct legacy *l, const char *at, const char *end)
     if (count > size) {
         msh_fail(r, "%jd cells cannot have %jd numbers", count, size);
     }
-    if (read_numbers(l, &array, vtk_find_type("int"), size) != NULL) {
+    if (read_numbers(l, &array, nifti_type(IMAGE_INT32), size) != NULL) {
         split_cells(l);
     }
 }
@@ -219,7 +223,7 @@ static void read_cells(struct legacy *l, const char *at, const char *end)
 /* ---- keywords ---- */
 
 static void read_array(struct legacy *l, const char *name, int64_t components, int64_t tuples,
-                       const struct vtk_type *type)
+                       const struct nifti_type *type)
 {
     struct vtk_array array = {.kind = l->data, .components = components};
     int64_t count;
@@ -272,9 +276,9 @@ static bool read_attribute(struct legacy *l, const char *at, const char *end)
         int64_t components = attributes[i].components;
         copy_word(r, &at, end, name, sizeof name);
         components = components < 0 ? next_count(r, &at, end, 1) : components;
-        const struct vtk_type *type = attributes[i].components == -2
-                                          ? vtk_find_type(l->binary ? "unsigned_char" : "float")
-                                          : next_type(r, &at, end);
+        const struct nifti_type *type = attributes[i].components == -2
+                                            ? nifti_type(l->binary ? IMAGE_UINT8 : IMAGE_FLOAT32)
+                                            : next_type(r, &at, end);
         while (at < end && isspace((unsigned char)*at)) {
             at++;
         }
@@ -297,7 +301,7 @@ static void read_keyword(struct legacy *l, const char *at, const char *end)
     if (strcasecmp(key, "POINTS") == 0) {
         struct vtk_array array = {.kind = VTK_POINTS, .components = 3, .name = "points"};
         l->v.point_count = next_count(r, &at, end, 0);
-        const struct vtk_type *type = next_type(r, &at, end);
+        const struct nifti_type *type = next_type(r, &at, end);
         if (type != NULL) {
             (void)read_numbers(l, &array, type, 3 * l->v.point_count);
         }
@@ -305,7 +309,7 @@ static void read_keyword(struct legacy *l, const char *at, const char *end)
         read_cells(l, at, end);
     } else if (strcasecmp(key, "CELL_TYPES") == 0) {
         struct vtk_array array = {.kind = VTK_TYPES, .components = 1, .name = "types"};
-        (void)read_numbers(l, &array, vtk_find_type("int"), next_count(r, &at, end, 0));
+        (void)read_numbers(l, &array, nifti_type(IMAGE_INT32), next_count(r, &at, end, 0));
     } else if (strcasecmp(key, "CELL_DATA") == 0 || strcasecmp(key, "POINT_DATA") == 0) {
         l->data = toupper((unsigned char)key[0]) == 'C' ? VTK_OF_CELLS : VTK_OF_POINTS;
         l->tuples = next_count(r, &at, end, 0);
@@ -319,7 +323,7 @@ static void read_keyword(struct legacy *l, const char *at, const char *end)
         enum vtk_kind data = l->data;
         l->data = VTK_OTHER;
         read_array(l, name, 4, next_count(r, &at, end, 0),
-                   vtk_find_type(l->binary ? "unsigned_char" : "float"));
+                   nifti_type(l->binary ? IMAGE_UINT8 : IMAGE_FLOAT32));
         l->data = data;
     } else if (!read_attribute(l, at, end)) {
         msh_fail(r, "what this is, is not known: the file is damaged, or of another kind");

@@ -10,8 +10,8 @@
 /* An array that is to be read. */
 struct vtu_array {
     struct vtk_array array;
-    const struct vtk_type *type; /* NULL: it is not read */
-    int64_t offset, expected;    /* numbers, -1: as many as there are */
+    const struct nifti_type *type; /* NULL: it is not read */
+    int64_t offset, expected;      /* numbers, -1: as many as there are */
 };
 
 struct vtu {
@@ -101,13 +101,12 @@ static void begin_array(struct vtu *u, const char **attributes)
     u->at.array.components += u->at.array.components == 0;
     find_kind(u, attributes);
     u->at.offset = number_of(u, attributes, "offset", 0);
-    u->at.type = vtk_find_type(type != NULL ? type : "");
+    u->at.type = nifti_type_named(NUMBERS_OF_VTU, type != NULL ? type : "");
     if (u->at.type == NULL && u->at.array.kind >= VTK_POINTS && u->at.array.kind <= VTK_TYPES) {
         msh_fail(r, "%s: numbers of type '%s' are not read", u->at.array.name, type != NULL ? type : "");
     } else if (u->at.array.kind == VTK_POINTS && u->at.array.components != 3) {
         msh_fail(r, "points of %jd coordinates, not 3", u->at.array.components);
-    } else if (u->at.type != NULL &&
-               (u->at.array.kind == VTK_OTHER || !vtk_is_wanted(&u->v, &u->at.array, u->at.type))) {
+    } else if (u->at.array.kind == VTK_OTHER || !vtk_is_wanted(&u->v, &u->at.array, u->at.type)) {
         u->at.type = NULL;
     }
 }
@@ -148,17 +147,17 @@ static void read_binary(struct vtu *u, const char *at, const char *end, bool bas
     struct vtu_source source = {at, end, base64, u->swap, u->compressed, u->word, INT64_MAX};
     struct vtu_bytes data = {0};
     int64_t most;
-    if (!__builtin_mul_overflow(most_numbers(u), u->at.type->size, &most)) {
+    if (!__builtin_mul_overflow(most_numbers(u), u->at.type->bytes, &most)) {
         source.most = most;
     }
     vtu_read_bytes(r, &source, &data);
-    int64_t size = u->at.type->size, count = u->at.expected < 0 ? data.size / size : u->at.expected;
+    int64_t size = u->at.type->bytes, count = u->at.expected < 0 ? data.size / size : u->at.expected;
     if (count > data.size / size || count * size != data.size) {
         msh_fail(r, "%s: %jd bytes, not %jd numbers of %jd", u->at.array.name, data.size, count, size);
     }
     struct vtk_array *array = vtk_add(&u->v, &u->at.array, count);
     if (array != NULL) {
-        vtk_fill_binary(r, array, u->at.type, u->swap, data.bytes);
+        nifti_get(u->at.type, (const unsigned char *)data.bytes, u->swap, (size_t)count, array->value);
     }
     free(data.bytes);
 }
@@ -176,7 +175,7 @@ static void read_text(struct vtu *u, const char *text, const char *end)
     }
     struct vtk_array *array = vtk_add(&u->v, &u->at.array, count);
     if (array != NULL) {
-        vtk_fill_text(r, array, &text, end);
+        vtk_fill_text(r, array, u->at.type, &text, end);
     }
 }
 
