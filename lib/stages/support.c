@@ -1,7 +1,7 @@
 #include "stages/stages.h"
 
 #include "approx/cells/face_edges.h"
-#include "approx/support/support_space.h"
+#include "approx/support/support.h"
 #include "base/memory.h"
 #include "base/options.h"
 #include "io/stream/sections.h"
@@ -49,8 +49,8 @@ static enum status put_lists(struct stream *stream, const struct support_options
     const char *prefix = listed->prefix;
     FREED_BY(support_free) struct support_lists lists = {0};
     int64_t count = points->rows;
-    RETURN_IF_ERROR(support_space_lists(options, space, &listed->places, count, points->data, points->name,
-                                        &lists, error));
+    RETURN_IF_ERROR(
+        support_build(options, space, &listed->places, count, points->data, points->name, &lists, error));
     int64_t pairs = lists.ptr[count];
     struct list_report *told = &report->list[report->lists++];
     *told = (struct list_report){.what = listed->called, .pairs = pairs, .lists = lists};

@@ -64,7 +64,7 @@ static inline void scattered_free(struct scattered *cloud)
 /* Supports and shape functions of all points of a cloud. */
 struct table {
     double *radius, *phi, *dphi;
-    struct point_grid grid;
+    struct support_space space;
     struct support_lists lists;
 };
 
@@ -74,7 +74,7 @@ static inline void table_free(struct table *table)
     free(table->phi);
     free(table->dphi);
     support_free(&table->lists);
-    point_grid_free(&table->grid);
+    support_space_free(&table->space);
 }
 
 /* As far as it goes: the status tells. Radii from nodes_spacing unless options->radius. */
@@ -90,11 +90,12 @@ static inline enum status tabulate(const struct support_options *options, int64_
         status = support_radii(options, count, spacing, table->radius, error);
     }
     if (status == STATUS_OK) {
-        status = point_grid_build(&table->grid, dim, count, x, table->radius, error);
+        const struct cells none = {.dim = dim, .node_count = count, .x = x};
+        status = support_space_build(options, &none, table->radius, &table->space, error);
     }
     if (status == STATUS_OK) {
-        status = support_build(options, &table->grid, NULL, NULL, point_count, points, "points.x",
-                               &table->lists, error);
+        status = support_build(options, &table->space, NULL, point_count, points, "points.x", &table->lists,
+                               error);
     }
     if (status == STATUS_OK) {
         int64_t pairs = table->lists.ptr[point_count];

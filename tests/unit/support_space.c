@@ -4,7 +4,7 @@
 #include "approx/points/cloud.h"
 #include "approx/field/field.h"
 #include "approx/field/field_turning.h"
-#include "approx/support/support_space.h"
+#include "approx/support/support.h"
 #include "base/vector.h"
 
 /* A lattice over the unit square or cube, its cells on the sides x < .5 and x > .5 of an interface. */
@@ -108,7 +108,7 @@ TEST_IN_EACH_DIM(lists_stop_at_the_interface)
     int64_t crossing = 0;
     options.side = halves.side;
     GOOD(support_space_build(&options, &halves.cells, halves.radius, &space, &error));
-    GOOD(support_space_lists(&options, &space, NULL, COUNT, x, "points", &lists, &error));
+    GOOD(support_build(&options, &space, NULL, COUNT, x, "points", &lists, &error));
     for (int64_t p = 0; p < COUNT; p++) {
         int64_t at = lists.ptr[p];
         for (int32_t n = 0; n < halves.cells.node_count; n++) {
@@ -147,8 +147,8 @@ TEST_IN_EACH_DIM(places_tell_the_side)
         int64_t count = kind == 0 ? nodes : cells;
         const double *x = kind == 0 ? halves.cells.x : middle;
         const struct visibility_places *known = kind == 0 ? &at_nodes : &in_cells;
-        GOOD(support_space_lists(&options, &space, NULL, count, x, "points", &found, &error));
-        GOOD(support_space_lists(&options, &space, known, count, x, "points", &given, &error));
+        GOOD(support_build(&options, &space, NULL, count, x, "points", &found, &error));
+        GOOD(support_build(&options, &space, known, count, x, "points", &given, &error));
         assert_memory_equal(found.ptr, given.ptr, (size_t)(count + 1) * sizeof *found.ptr);
         assert_memory_equal(found.idx, given.idx, (size_t)found.ptr[count] * sizeof *found.idx);
         assert_memory_equal(found.widen, given.widen, (size_t)count * sizeof *found.widen);
@@ -201,7 +201,7 @@ TEST(inclusions)
         }
         options.side = halves.side;
         GOOD(support_space_build(&options, &halves.cells, halves.radius, &space, &error));
-        GOOD(support_space_lists(&options, &space, &at_nodes, halves.cells.node_count, halves.cells.x,
+        GOOD(support_build(&options, &space, &at_nodes, halves.cells.node_count, halves.cells.x,
                                  "nodes", &lists, &error));
         assert_true(lists.fewest >= 3);
     }
@@ -217,11 +217,11 @@ TEST(failures_name_the_row)
     static const double x[] = {0.2, 0.2, 0.8, 0.8, NAN, 0.8, 0.7, 0.7};
     options.side = halves.side;
     GOOD(support_space_build(&options, &halves.cells, halves.radius, &space, &error));
-    FAILS_WITH(support_space_lists(&options, &space, NULL, 4, x, "points.x", &lists, &error), STATUS_INPUT,
+    FAILS_WITH(support_build(&options, &space, NULL, 4, x, "points.x", &lists, &error), STATUS_INPUT,
                "points.x: row 2: not a finite coordinate");
     options.least = 1000;
     static const double inside[] = {0.8, 0.8, 0.2, 0.2};
-    FAILS(support_space_lists(&options, &space, NULL, 2, inside, "points.x", &lists, &error), STATUS_VERDICT,
+    FAILS(support_build(&options, &space, NULL, 2, inside, "points.x", &lists, &error), STATUS_VERDICT,
           "points.x: row 0 at (0.8, 0.8): no good support");
 }
 

@@ -95,8 +95,7 @@ static bool all_solid(const int *cube)
 /* Supports and what they find at points in cells, some of them off the middle. */
 struct found {
     double radius[MOST_NODES];
-    struct point_grid grid;
-    struct visibility visibility;
+    struct support_space space;
     int64_t count;
     double *x;
     int32_t *cell;
@@ -127,20 +126,18 @@ static void find(double radius, bool widen)
             }
         }
     }
-    GOOD(point_grid_build(&found.grid, dim, body.node_count, body.x, found.radius, &error));
-    GOOD(visibility_build(&body.cells, NULL, &found.grid, &found.visibility, &error));
+    GOOD(support_space_build(&found.options, &body.cells, found.radius, &found.space, &error));
     struct visibility_places inside = {.cell = found.cell, .points_per_row = 1};
-    GOOD(support_build(&found.options, &found.grid, &found.visibility, &inside, found.count, found.x,
-                       "points", &found.lists, &error));
+    GOOD(support_build(&found.options, &found.space, &inside, found.count, found.x, "points", &found.lists,
+                       &error));
     inside = (struct visibility_places){.nodes = true};
-    GOOD(support_build(&found.options, &found.grid, &found.visibility, &inside, body.node_count, body.x,
-                       "nodes", &found.nodes, &error));
+    GOOD(support_build(&found.options, &found.space, &inside, body.node_count, body.x, "nodes", &found.nodes,
+                       &error));
 }
 
 static void lose(void)
 {
-    point_grid_free(&found.grid);
-    visibility_free(&found.visibility);
+    support_space_free(&found.space);
     support_free(&found.lists);
     support_free(&found.nodes);
     free(found.x);
@@ -159,16 +156,17 @@ static bool same_lists(const struct support_lists *a, const struct support_lists
 TEST_IN_EACH_DIM(convex)
 {
     for (int wide = 0; wide < 2; wide++) {
+        FREED_BY(support_space_free) struct support_space space = {0};
         struct support_lists plain;
         build(dim, (int[3]){7, 6, 5}, all_solid, one_sheet);
         find(wide ? 2.3 : 0.9, true);
+        const struct cells none = {.dim = dim, .node_count = body.node_count, .x = body.x};
+        GOOD(support_space_build(&found.options, &none, found.radius, &space, &error));
         assert_true(wide || found.lists.widened > 0);
-        GOOD(support_build(&found.options, &found.grid, NULL, NULL, found.count, found.x, "points", &plain,
-                           &error));
+        GOOD(support_build(&found.options, &space, NULL, found.count, found.x, "points", &plain, &error));
         assert_true(same_lists(&plain, &found.lists));
         support_free(&plain);
-        GOOD(support_build(&found.options, &found.grid, NULL, NULL, body.node_count, body.x, "nodes", &plain,
-                           &error));
+        GOOD(support_build(&found.options, &space, NULL, body.node_count, body.x, "nodes", &plain, &error));
         assert_true(same_lists(&plain, &found.nodes));
         support_free(&plain);
         lose();

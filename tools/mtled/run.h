@@ -5,7 +5,7 @@
 #include "output.h"
 #include "mtled/model.h"
 #include "process.h"
-#include "approx/support/support_space.h"
+#include "approx/support/support.h"
 #include "base/clock.h"
 #include "base/state.h"
 #include "io/checkpoint/checkpoint.h"

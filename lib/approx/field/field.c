@@ -1,6 +1,6 @@
 #include "approx/field/field.h"
 
-#include "approx/support/support_space.h"
+#include "approx/support/support.h"
 #include "base/chunks.h"
 #include "base/memory.h"
 #include "base/round_off.h"
@@ -117,7 +117,7 @@ enum status field_table_build(const struct support_options *options, const struc
     FREED_BY(support_space_free) struct support_space space = {0};
     *table = (struct field_table){0};
     RETURN_IF_ERROR(support_space_build(options, cells, radius, &space, error));
-    RETURN_IF_ERROR(support_space_lists(options, &space, NULL, count, x, what, &table->lists, error));
+    RETURN_IF_ERROR(support_build(options, &space, NULL, count, x, what, &table->lists, error));
     RETURN_IF_ERROR(NEW_ARRAY(&table->phi, table->lists.ptr[count], error));
     struct neighbours lists = support_view(&table->lists);
     return shape_table(shapes != NULL ? shapes : &options->mls, cells->x, radius, &lists, x, what, table->phi,

@@ -53,7 +53,7 @@ enum status field_least_determinants(const struct support_options *options, cons
     for (int64_t i = 0; i < count; i++) {
         place_points(cells, cell[i], x + i * FIELD_TURNING_POINTS * cells->dim);
     }
-    RETURN_IF_ERROR(support_space_lists(options, space, &places, points, x, what, &table, error));
+    RETURN_IF_ERROR(support_build(options, space, &places, points, x, what, &table, error));
     NEW_SCRATCH(double, phi, table.ptr[points], error);
     NEW_SCRATCH(double, dphi, table.ptr[points] * cells->dim, error);
     struct neighbours lists = support_view(&table);

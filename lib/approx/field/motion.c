@@ -2,7 +2,7 @@
 
 #include "approx/field/field.h"
 #include "approx/shape/shape.h"
-#include "approx/support/support_space.h"
+#include "approx/support/support.h"
 #include "base/memory.h"
 #include "base/vector.h"
 
@@ -55,7 +55,7 @@ static enum status find_gradients(const struct cells *cells, const double *u,
         RETURN_IF_ERROR(choose_radii(cells, &options, radius, error));
     }
     RETURN_IF_ERROR(support_space_build(&options, cells, radius, &space, error));
-    RETURN_IF_ERROR(support_space_lists(&options, &space, &places, nodes, cells->x, "nodes", &lists, error));
+    RETURN_IF_ERROR(support_build(&options, &space, &places, nodes, cells->x, "nodes", &lists, error));
     NEW_SCRATCH(double, phi, lists.ptr[nodes], error);
     NEW_SCRATCH(double, dphi, lists.ptr[nodes] * dim, error);
     struct neighbours view = support_view(&lists);

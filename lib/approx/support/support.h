@@ -14,7 +14,6 @@ struct support_options {
     double gradient_bound; /* largest |grad phi| h admitted, h the mean spacing within the support */
     enum visibility_rule visibility; /* whether neighbours must be visible through the cells */
     struct mls mls;                  /* the shape functions for which the lists are made */
-    /* Used by support_space.h only: */
     const int32_t *side; /* of each cell: its side of the interfaces at which supports stop; NULL: none */
 };
 
@@ -49,19 +48,34 @@ MUST_CHECK enum status nodes_spacing(int dim, int64_t node_count, const double *
 MUST_CHECK enum status support_radii(const struct support_options *options, int64_t node_count,
                                      const double *spacing, double *radius, struct error *error);
 
-/* The neighbour lists of points x[count * dim]; `what` names these in messages. With `visibility`, neighbours
- * must be visible through the cells (visibility.h), and `places` (NULL: not known) are the cells that contain
- * the points; with visibility NULL all nodes within their radius are neighbours. Points that have no good
- * support on their side of the interfaces, e.g. in a sliver, see the whole body. Threaded; the result does
- * not depend on the number of threads. Widening ends at eightfold: gradients may exceed their bound then, as
- * little as any of these radii lets them (lists->steep). STATUS_VERDICT, naming the point, if no moment
- * matrix is well-conditioned; without options->widen the shape functions report that. STATUS_INPUT for
- * coordinates that are not finite. */
-MUST_CHECK enum status support_build(const struct support_options *options, const struct point_grid *grid,
-                                     const struct visibility *visibility,
+/* The nodes of a body with their support radii, and their visibility through its cells. If cells have sides
+ * (support_options.side), a neighbour of a point is a node of the cells on the point's side. So shape
+ * functions have a kink at an interface, like a displacement where the stiffness jumps. Points of faces and
+ * nodes on an interface take the lowest of the sides that meet there, so that the field has a single value
+ * there. The arrays of the cells and the radii are the caller's and must outlive this. */
+struct support_space {
+    struct cells cells;
+    const double *radius;
+    struct point_grid grid;
+    struct visibility visibility; /* where neighbours must be visible through the cells */
+};
+
+/* Fill in a space, which stays where it is. radius[node_count], m. Errors: STATUS_INPUT for cells that share
+ * a face with more than one other. */
+MUST_CHECK enum status support_space_build(const struct support_options *options, const struct cells *cells,
+                                           const double *radius, struct support_space *space,
+                                           struct error *error);
+void support_space_free(struct support_space *space);
+
+/* The neighbour lists of points x[count * dim] in the cells of `places` (NULL: not known); `what` names these
+ * in messages. Points that have no good support on their side of the interfaces, e.g. in a sliver, see the
+ * whole body. Threaded; the result does not depend on the number of threads. Widening ends at eightfold:
+ * gradients may exceed their bound then, as little as any of these radii lets them (lists->steep).
+ * STATUS_VERDICT, naming the point, if no moment matrix is well-conditioned; without options->widen the shape
+ * functions report that. STATUS_INPUT for coordinates that are not finite. */
+MUST_CHECK enum status support_build(const struct support_options *options, const struct support_space *space,
                                      const struct visibility_places *places, int64_t count, const double *x,
                                      const char *what, struct support_lists *lists, struct error *error);
-
 void support_free(struct support_lists *lists);
 
 /* Print "(x, y[, z])" of a point into text[96], for messages; returns text. POINT_TEXT: a text that lasts as
