@@ -12,13 +12,7 @@
 /* Singular values below this share of the largest are noise: the points do not determine the combination. */
 static const double cut = 1e-5;
 
-enum { MOST_NEIGHBOURS = 24, MOST_MONOMIALS = 10 };
-
-struct nearest {
-    int64_t count;
-    int64_t row[MOST_NEIGHBOURS];
-    double distance[MOST_NEIGHBOURS]; /* ascending, in the table's unit */
-};
+enum { MOST_NEIGHBOURS = NEAREST_MOST, MOST_MONOMIALS = 10 };
 
 enum status scattered_fit_build(struct scattered_fit *fit, struct error *error)
 {
@@ -50,64 +44,22 @@ void scattered_fit_free(struct scattered_fit *fit)
     fit->x = fit->radius = NULL;
 }
 
-/* Insert a point into the sorted list of the nearest; of equally near ones the earlier row comes first. */
-static void insert(struct nearest *nearest, int64_t most, int64_t row, double distance)
-{
-    if (nearest->count == most && distance >= nearest->distance[most - 1]) {
-        return;
-    }
-    int64_t at = nearest->count < most ? nearest->count++ : most - 1;
-    for (; at > 0 && nearest->distance[at - 1] > distance; at--) {
-        nearest->distance[at] = nearest->distance[at - 1];
-        nearest->row[at] = nearest->row[at - 1];
-    }
-    nearest->distance[at] = distance;
-    nearest->row[at] = row;
-}
-
 /* Whether a point is connected to the node, or not yet checked. */
-static bool usable(const struct scattered_fit *fit, int64_t row)
+static bool is_usable(const void *paths, int32_t row)
 {
-    return fit->paths == NULL || fit->paths->verdict[row] != PATH_NONE;
+    return ((const struct edge_paths *)paths)->verdict[row] != PATH_NONE;
 }
 
-static int64_t count_usable(const struct scattered_fit *fit, const struct index_list *rows)
+/* The nearest points that are connected or not yet checked, with distances in the table's unit. */
+static enum status find_nearest(const struct scattered_fit *fit, const double *x,
+                                struct nearest_nodes *nearest, struct error *error)
 {
-    int64_t count = 0;
-    for (int64_t k = 0; k < rows->count; k++) {
-        count += usable(fit, rows->index[k]);
-    }
-    return count;
-}
-
-/* The nearest points that are connected or not yet checked, within a radius that is doubled until there are
- * enough. */
-static enum status find_nearest(const struct scattered_fit *fit, const double *x, struct nearest *nearest,
-                                struct error *error)
-{
-    int dim = fit->dim;
-    int64_t most = dim == 2 ? 12 : MOST_NEIGHBOURS, wanted = fit->count < most ? fit->count : most;
     double at[3] = {0.0, 0.0, 0.0};
-    FREED_BY(index_list_free) struct index_list near = {0};
-    for (int a = 0; a < dim; a++) {
+    for (int a = 0; a < fit->dim; a++) {
         at[a] = x[a] / fit->unit;
     }
-    for (double factor = 1.0;
-         count_usable(fit, &near) < wanted && near.count < fit->count && factor < 0x1p500; factor *= 2.0) {
-        near.count = 0;
-        RETURN_IF_ERROR(point_grid_query(&fit->grid, at, factor, &near, error));
-    }
-    nearest->count = 0;
-    for (int64_t k = 0; k < near.count; k++) { /* rows ascend */
-        double distance = vector_distance(dim, fit->x + near.index[k] * dim, at);
-        if (usable(fit, near.index[k])) {
-            insert(nearest, most, near.index[k], distance);
-        }
-    }
-    if (near.count < wanted) {
-        return fail(error, STATUS_INPUT, "interpolation of a table: a point is too far from it");
-    }
-    return STATUS_OK;
+    return point_grid_nearest(&fit->grid, at, fit->dim == 2 ? 12 : MOST_NEIGHBOURS,
+                              fit->paths != NULL ? is_usable : NULL, fit->paths, nearest, error);
 }
 
 /* Mean spacing of the points around row `row`, in the table's unit: each of n points within a radius r has
@@ -117,7 +69,7 @@ static enum status spacing_around(const struct scattered_fit *fit, int64_t row, 
                                   struct error *error)
 {
     double x[3] = {0.0, 0.0, 0.0};
-    struct nearest nearest;
+    struct nearest_nodes nearest;
     for (int a = 0; a < fit->dim; a++) {
         x[a] = fit->row[row * fit->row_size + a] * fit->unit;
     }
@@ -132,7 +84,7 @@ static enum status spacing_around(const struct scattered_fit *fit, int64_t row, 
 /* The nearest connected points: the nearest ones are checked, and unconnected ones replaced, until all are
  * connected. */
 static enum status find_reached(const struct scattered_fit *fit, int32_t from, const double *x,
-                                struct nearest *nearest, struct error *error)
+                                struct nearest_nodes *nearest, struct error *error)
 {
     if (fit->paths != NULL) {
         edge_paths_begin(fit->paths, from);
@@ -142,7 +94,7 @@ static enum status find_reached(const struct scattered_fit *fit, int32_t from, c
         RETURN_IF_ERROR(find_nearest(fit, x, nearest, error));
         for (int64_t i = 0; fit->paths != NULL && i < nearest->count; i++) {
             bool reached;
-            RETURN_IF_ERROR(edge_paths_reach(fit->paths, nearest->row[i], &reached, error));
+            RETURN_IF_ERROR(edge_paths_reach(fit->paths, nearest->node[i], &reached, error));
             settled = settled && reached;
         }
     }
@@ -240,8 +192,9 @@ static void orthogonalise(const struct part *linear, int64_t count, gsl_matrix *
 /* The weighted basis at the neighbours, in coordinates from their weighted mean: the linear columns, and the
  * quadratic ones. at_x: the basis at x. With coordinates from the mean, the combinations that the points do
  * not determine are those that vanish on them. */
-static void fill_columns(const struct scattered_fit *fit, const double *x, const struct nearest *nearest,
-                         double *root, gsl_matrix *linear, gsl_matrix *quadratic, double *at_x)
+static void fill_columns(const struct scattered_fit *fit, const double *x,
+                         const struct nearest_nodes *nearest, double *root, gsl_matrix *linear,
+                         gsl_matrix *quadratic, double *at_x)
 {
     int dim = fit->dim == 2 ? 2 : 3;
     double radius = 1.1 * nearest->distance[nearest->count - 1], total = 0.0;
@@ -251,7 +204,7 @@ static void fill_columns(const struct scattered_fit *fit, const double *x, const
         weight_evaluate(WEIGHT_QUARTIC, relative * relative, &weight, &slope);
         root[i] = sqrt(weight);
         total += weight;
-        add_scaled(dim, weight, fit->row + nearest->row[i] * fit->row_size, mean);
+        add_scaled(dim, weight, fit->row + nearest->node[i] * fit->row_size, mean);
     }
     for (int a = 0; a < dim; a++) {
         mean[a] /= total;
@@ -260,7 +213,7 @@ static void fill_columns(const struct scattered_fit *fit, const double *x, const
     monomials(dim, xi, at_x);
     for (int64_t i = 0; i < nearest->count; i++) {
         for (int a = 0; a < dim; a++) {
-            xi[a] = (fit->row[nearest->row[i] * fit->row_size + a] - mean[a]) / radius;
+            xi[a] = (fit->row[nearest->node[i] * fit->row_size + a] - mean[a]) / radius;
         }
         monomials(dim, xi, p);
         for (size_t k = 0; k < linear->size2; k++) {
@@ -274,8 +227,8 @@ static void fill_columns(const struct scattered_fit *fit, const double *x, const
 
 /* phi[i]: the weight of neighbour i in the value at x. The quadratic monomials fit the remainder of the
  * linear fit, so that linear fields are exact however few the points are. */
-static enum status weights_of(const struct scattered_fit *fit, const double *x, const struct nearest *nearest,
-                              double *phi, struct error *error)
+static enum status weights_of(const struct scattered_fit *fit, const double *x,
+                              const struct nearest_nodes *nearest, double *phi, struct error *error)
 {
     size_t linear_columns = (size_t)(1 + fit->dim);
     size_t quadratic_columns = (size_t)(fit->dim * (fit->dim + 1) / 2);
@@ -312,12 +265,12 @@ static enum status weights_of(const struct scattered_fit *fit, const double *x, 
 enum status scattered_fit_evaluate(const struct scattered_fit *fit, int32_t from, const double *x,
                                    double *values, double *distance, double *spacing, struct error *error)
 {
-    struct nearest nearest = {0};
+    struct nearest_nodes nearest = {0};
     double phi[MOST_NEIGHBOURS] = {1.0};
     RETURN_IF_ERROR(find_reached(fit, from, x, &nearest, error));
     int64_t last = nearest.count - 1;
     *distance = nearest.distance[0] * fit->unit;
-    RETURN_IF_ERROR(spacing_around(fit, nearest.row[0], spacing, error));
+    RETURN_IF_ERROR(spacing_around(fit, nearest.node[0], spacing, error));
     *spacing *= fit->unit;
     if (nearest.count > 1 && nearest.distance[last] > 0.0) {
         RETURN_IF_ERROR(weights_of(fit, x, &nearest, phi, error));
@@ -325,7 +278,7 @@ enum status scattered_fit_evaluate(const struct scattered_fit *fit, int32_t from
     for (int v = 0; v < fit->value_count; v++) {
         values[v] = 0.0;
         for (int64_t i = 0; i < nearest.count; i++) {
-            values[v] += phi[i] * fit->row[nearest.row[i] * fit->row_size + fit->dim + v] * fit->unit;
+            values[v] += phi[i] * fit->row[nearest.node[i] * fit->row_size + fit->dim + v] * fit->unit;
         }
     }
     return STATUS_OK;

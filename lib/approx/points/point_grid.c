@@ -2,6 +2,7 @@
 
 #include "base/lists.h"
 #include "base/memory.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -213,4 +214,40 @@ enum status point_grid_query(const struct point_grid *grid, const double *x, dou
                              struct index_list *list, struct error *error)
 {
     return point_grid_query_box(grid, x, x, factor, list, error);
+}
+
+static void insert(struct nearest_nodes *nearest, int64_t most, int32_t node, double distance)
+{
+    if (nearest->count == most && distance >= nearest->distance[most - 1]) {
+        return;
+    }
+    int64_t at = nearest->count < most ? nearest->count++ : most - 1;
+    for (; at > 0 && nearest->distance[at - 1] > distance; at--) {
+        nearest->distance[at] = nearest->distance[at - 1];
+        nearest->node[at] = nearest->node[at - 1];
+    }
+    nearest->distance[at] = distance;
+    nearest->node[at] = node;
+}
+
+/* Within radii that are doubled until there are enough. */
+enum status point_grid_nearest(const struct point_grid *grid, const double *x, int64_t most,
+                               node_accepts *accepts, const void *context, struct nearest_nodes *nearest,
+                               struct error *error)
+{
+    FREED_BY(index_list_free) struct index_list near = {0};
+    for (double factor = 1.0; factor < 0x1p500; factor *= 2.0) {
+        near.count = nearest->count = 0;
+        RETURN_IF_ERROR(point_grid_query(grid, x, factor, &near, error));
+        for (int64_t i = 0; i < near.count; i++) {
+            if (accepts == NULL || accepts(context, near.index[i])) {
+                insert(nearest, most, near.index[i],
+                       vector_distance(grid->dim, grid->x + (int64_t)near.index[i] * grid->dim, x));
+            }
+        }
+        if (nearest->count == most || near.count == grid->node_count) {
+            return STATUS_OK;
+        }
+    }
+    return fail(error, STATUS_INPUT, "a point is too far from all others");
 }

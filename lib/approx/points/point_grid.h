@@ -4,6 +4,7 @@
 
 #include "base/status.h"
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #define POINT_GRID_LEVELS 40
@@ -50,6 +51,22 @@ MUST_CHECK enum status point_grid_query(const struct point_grid *grid, const dou
 MUST_CHECK enum status point_grid_query_box(const struct point_grid *grid, const double *low,
                                             const double *high, double factor, struct index_list *list,
                                             struct error *error);
+
+/* The nodes nearest to a point, by distance, of equally near ones the lower first. */
+enum { NEAREST_MOST = 24 };
+struct nearest_nodes {
+    int64_t count;
+    int32_t node[NEAREST_MOST];
+    double distance[NEAREST_MOST];
+};
+
+/* The `most` nodes nearest to x, at most NEAREST_MOST, of those that the function (NULL: all) accepts; fewer
+ * if there are no more. All radii of the grid are equal; they only begin the search. STATUS_INPUT if the
+ * nodes are too far away. */
+typedef bool node_accepts(const void *context, int32_t node);
+MUST_CHECK enum status point_grid_nearest(const struct point_grid *grid, const double *x, int64_t most,
+                                          node_accepts *accepts, const void *context,
+                                          struct nearest_nodes *nearest, struct error *error);
 
 /* Room for `count` more indices. */
 MUST_CHECK enum status index_list_reserve(struct index_list *list, int64_t count, struct error *error);
