@@ -1,5 +1,6 @@
 #include "approx/field/field.h"
 
+#include "approx/points/select.h"
 #include "approx/support/support.h"
 #include "base/chunks.h"
 #include "base/memory.h"
@@ -37,75 +38,33 @@ enum status field_spacing(const struct cells *cells, double *spacing, struct err
     return STATUS_OK;
 }
 
-/* centre[count * dim] and radius[count], m: a ball around each cell that contains all points nearer to it
- * than `within` times size[count], the largest spacing of its nodes. */
-static void enclose(const struct cells *cells, const double *spacing, double within, double *centre,
-                    double *radius, double *size)
+/* nearest[count]: the cell nearest to each point of x[count * dim], the first of several; -1: all are farther
+ * than `within` times the largest spacing of their nodes. Where there are no cells, the node; -1: all are
+ * farther than twice their spacing. */
+static enum status find_nearest(const struct cells *cells, const double *spacing, double within,
+                                int64_t count, const double *x, int64_t *nearest, struct error *error)
 {
     int dim = cells->dim;
-    for (int64_t c = 0; c < cells->count; c++) {
-        cell_centroid(cells, c, centre + c * dim);
-        for (int k = 0; k <= dim; k++) {
-            int64_t node = cells->node[c * (dim + 1) + k];
-            radius[c] = fmax(radius[c], vector_distance(dim, cells->x + node * dim, centre + c * dim));
-            size[c] = fmax(size[c], spacing[node]);
-        }
-        radius[c] = (1.0 + 1e-6) * radius[c] + within * size[c];
+    struct pieces pieces = {dim, dim + 1, cells->count, cells->x, cells->node};
+    if (cells->count == 0) {
+        pieces = (struct pieces){dim, 1, cells->node_count, cells->x, NULL};
+        within = 2.0;
     }
-}
-
-/* cell[count]: the cell nearest to each point of x[count * dim], the first of several; -1: all are farther
- * than `within` times the largest spacing of their nodes. */
-static enum status nearest_cells(const struct cells *cells, const double *spacing, double within,
-                                 int64_t count, const double *x, int64_t *cell, struct error *error)
-{
-    int dim = cells->dim;
-    FREED_BY(point_grid_free) struct point_grid grid = {0};
-    FREED_BY(index_list_free) struct index_list near = {0};
-    NEW_SCRATCH(double, centre, cells->count * dim, error);
-    NEW_SCRATCH(double, radius, cells->count, error);
-    NEW_SCRATCH(double, size, cells->count, error);
-    enclose(cells, spacing, within, centre, radius, size);
-    RETURN_IF_ERROR(point_grid_build(&grid, dim, cells->count, centre, radius, error));
-    for (int64_t p = 0; p < count; p++) {
-        double least2 = INFINITY;
-        near.count = 0;
-        cell[p] = -1;
-        RETURN_IF_ERROR(point_grid_query(&grid, x + p * dim, 1.0, &near, error));
-        for (int64_t i = 0; i < near.count && least2 > 0.0; i++) {
-            const double *corner[4];
-            int64_t c = near.index[i];
-            cell_corners(cells, c, corner);
-            double most = (within + COARSE_ROUND_OFF) * size[c];
-            double distance2 = simplex_distance2(dim, dim, corner, x + p * dim);
-            if (distance2 <= most * most && distance2 < least2) {
-                least2 = distance2;
-                cell[p] = c;
-            }
-        }
+    NEW_SCRATCH(double, reach, pieces.count, error);
+    for (int64_t i = 0; i < pieces.count * pieces.corners; i++) {
+        double size = spacing[pieces.node != NULL ? pieces.node[i] : i];
+        reach[i / pieces.corners] = fmax(reach[i / pieces.corners], (within + COARSE_ROUND_OFF) * size);
     }
-    return STATUS_OK;
+    return pieces_nearest(&pieces, reach, count, x, nearest, error);
 }
 
 enum status field_outside(const struct cells *cells, const double *spacing, double within, int64_t count,
                           const double *x, bool *outside, struct error *error)
 {
-    FREED_BY(point_grid_free) struct point_grid grid = {0};
-    FREED_BY(index_list_free) struct index_list near = {0};
-    if (cells->count > 0) {
-        SCRATCH int64_t *cell = NULL;
-        RETURN_IF_ERROR(NEW_ARRAY(&cell, count, error));
-        RETURN_IF_ERROR(nearest_cells(cells, spacing, within, count, x, cell, error));
-        for (int64_t p = 0; p < count; p++) {
-            outside[p] = cell[p] < 0;
-        }
-        return STATUS_OK;
-    }
-    RETURN_IF_ERROR(point_grid_build(&grid, cells->dim, cells->node_count, cells->x, spacing, error));
+    NEW_SCRATCH(int64_t, nearest, count, error);
+    RETURN_IF_ERROR(find_nearest(cells, spacing, within, count, x, nearest, error));
     for (int64_t p = 0; p < count; p++) {
-        near.count = 0;
-        RETURN_IF_ERROR(point_grid_query(&grid, x + p * cells->dim, 2.0, &near, error));
-        outside[p] = near.count == 0;
+        outside[p] = nearest[p] < 0;
     }
     return STATUS_OK;
 }
@@ -171,7 +130,7 @@ static enum status interpolate(const struct cells *cells, int64_t cols, const do
     NEW_SCRATCH(double, spacing, cells->node_count, error);
     NEW_SCRATCH(int64_t, cell, count, error);
     RETURN_IF_ERROR(field_spacing(cells, spacing, error));
-    RETURN_IF_ERROR(nearest_cells(cells, spacing, FIELD_MARGIN, count, within, cell, error));
+    RETURN_IF_ERROR(find_nearest(cells, spacing, FIELD_MARGIN, count, within, cell, error));
     for (int64_t p = 0; p < count; p++) {
         if (cell[p] < 0) {
             char place[96];

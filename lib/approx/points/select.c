@@ -67,55 +67,76 @@ void items_facing(const struct items *items, const double *direction, double deg
 
 /* ---- distances ---- */
 
-double piece_distance(const struct pieces *pieces, int64_t piece, const double *point)
+static void find_corners(const struct pieces *pieces, int64_t piece, const double *corner[4])
 {
-    const double *corner[3];
     for (int k = 0; k < pieces->corners; k++) {
-        corner[k] = pieces->x + (piece * pieces->corners + k) * pieces->dim;
+        int64_t at = piece * pieces->corners + k;
+        corner[k] = pieces->x + (pieces->node != NULL ? pieces->node[at] : at) * pieces->dim;
     }
-    return sqrt(simplex_distance2(pieces->dim, pieces->corners - 1, corner, point));
 }
 
-/* Balls of radius `reach` and that of each piece around the pieces: those that contain a point are
- * candidates.
- */
-static void circumscribe(const struct pieces *pieces, double reach, double *centre, double *radius)
+/* Balls around the pieces that hold all points within their reach: those that contain a point are
+ * candidates. */
+static void enclose(const struct pieces *pieces, const double *reach, double *centre, double *radius)
 {
     int dim = pieces->dim;
     for (int64_t p = 0; p < pieces->count; p++) {
-        const double *x = pieces->x + p * pieces->corners * dim;
-        double *c = centre + p * dim;
+        const double *corner[4];
         double farthest = 0;
-        for (int k = 0; k < dim; k++) {
-            for (int i = 0; i < pieces->corners; i++) {
-                c[k] += x[i * dim + k] / pieces->corners;
-            }
+        find_corners(pieces, p, corner);
+        for (int i = 0; i < pieces->corners; i++) {
+            add_scaled(dim, 1.0 / pieces->corners, corner[i], centre + p * dim);
         }
         for (int i = 0; i < pieces->corners; i++) {
-            farthest = fmax(farthest, vector_distance(dim, x + i * dim, c));
+            farthest = fmax(farthest, vector_distance(dim, corner[i], centre + p * dim));
         }
-        radius[p] = (reach + farthest) * (1 + 1e-9);
+        radius[p] = (reach[p] + farthest) * (1 + 1e-9);
     }
+}
+
+enum status pieces_nearest(const struct pieces *pieces, const double *reach, int64_t count,
+                           const double *points, int64_t *nearest, struct error *error)
+{
+    int dim = pieces->dim;
+    FREED_BY(point_grid_free) struct point_grid grid = {0};
+    FREED_BY(index_list_free) struct index_list near = {0};
+    NEW_SCRATCH(double, centre, pieces->count * dim, error);
+    NEW_SCRATCH(double, radius, pieces->count, error);
+    enclose(pieces, reach, centre, radius);
+    RETURN_IF_ERROR(point_grid_build(&grid, dim, pieces->count, centre, radius, error));
+    for (int64_t p = 0; p < count; p++) {
+        double least = INFINITY;
+        near.count = 0;
+        nearest[p] = -1;
+        RETURN_IF_ERROR(point_grid_query(&grid, points + p * dim, 1, &near, error));
+        for (int64_t i = 0; i < near.count && least > 0; i++) {
+            const double *corner[4];
+            find_corners(pieces, near.index[i], corner);
+            double distance = sqrt(simplex_distance2(dim, pieces->corners - 1, corner, points + p * dim));
+            if (distance <= reach[near.index[i]] && distance < least) {
+                least = distance;
+                nearest[p] = near.index[i];
+            }
+        }
+    }
+    return STATUS_OK;
 }
 
 enum status items_near(const struct items *items, const struct pieces *pieces, double reach, bool *chosen,
                        struct error *error)
 {
-    FREED_BY(point_grid_free) struct point_grid grid = {0};
-    FREED_BY(index_list_free) struct index_list candidates = {0};
-    NEW_SCRATCH(double, centre, pieces->count * pieces->dim, error);
-    NEW_SCRATCH(double, radius, pieces->count, error);
-    circumscribe(pieces, reach, centre, radius);
-    RETURN_IF_ERROR(point_grid_build(&grid, pieces->dim, pieces->count, centre, radius, error));
+    NEW_SCRATCH(double, centre, items->count * items->dim, error);
+    NEW_SCRATCH(double, reaches, pieces->count, error);
+    NEW_SCRATCH(int64_t, nearest, items->count, error);
+    for (int64_t p = 0; p < pieces->count; p++) {
+        reaches[p] = reach;
+    }
     for (int64_t i = 0; i < items->count; i++) {
-        double point[3];
-        item_centre(items, i, point);
-        candidates.count = 0;
-        chosen[i] = false;
-        RETURN_IF_ERROR(point_grid_query(&grid, point, 1, &candidates, error));
-        for (int64_t k = 0; k < candidates.count && !chosen[i]; k++) {
-            chosen[i] = piece_distance(pieces, candidates.index[k], point) <= reach;
-        }
+        item_centre(items, i, centre + i * items->dim);
+    }
+    RETURN_IF_ERROR(pieces_nearest(pieces, reaches, items->count, centre, nearest, error));
+    for (int64_t i = 0; i < items->count; i++) {
+        chosen[i] = nearest[i] >= 0;
     }
     return STATUS_OK;
 }

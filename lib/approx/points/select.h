@@ -38,16 +38,19 @@ void items_in_shape(const struct items *items, const struct shape *shape, bool *
 /* chosen[items->count]: facets (corners = dim) whose outward normal is within `degrees` of a direction. */
 void items_facing(const struct items *items, const double *direction, double degrees, bool *chosen);
 
-/* Points (corners = 1), segments (2) or triangles (3) in dim dimensions. */
+/* Points (corners = 1), segments (2), triangles (3) or tetrahedra (4) in dim dimensions. */
 struct pieces {
     int dim, corners;
     int64_t count;
-    const double *x; /* count * corners * dim, m */
+    const double *x;
+    const int32_t *node; /* count * corners: the places of their corners in x; NULL: one after the other */
 };
+
+/* nearest[count]: the piece nearest to each of points[count * dim], the first of several; -1: all are farther
+ * than their reach[pieces->count], m, positive. */
+MUST_CHECK enum status pieces_nearest(const struct pieces *pieces, const double *reach, int64_t count,
+                                      const double *points, int64_t *nearest, struct error *error);
 
 /* chosen[items->count]: items whose centre is within `reach` (positive, m) of a piece. */
 MUST_CHECK enum status items_near(const struct items *items, const struct pieces *pieces, double reach,
                                   bool *chosen, struct error *error);
-
-/* Distance of a point to a piece, m. */
-double piece_distance(const struct pieces *pieces, int64_t piece, const double *point);
