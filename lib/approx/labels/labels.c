@@ -8,8 +8,8 @@
 /* The labels and weights of the voxels about a point: rows of four along the first axis, those along the
  * second axis first. */
 struct stencil {
-    int count[3];     /* 4; 1 along an axis of one voxel, of which a row then has four copies */
-    uint64_t row[16]; /* count[2] * count[1]: 16 bits for each label, the first voxel in the lowest ones */
+    int count[3];        /* 4; 1 along an axis of one voxel, of which a row then has four copies */
+    uint16_t row[16][4]; /* count[2] * count[1] */
     double weight[3][4], slope[3][4];
 };
 
@@ -36,23 +36,15 @@ void labels_to_voxel(const struct labels *labels, const double x[], double voxel
 }
 
 /* The labels of four voxels along the first axis. */
-static uint64_t row_at(const struct labels *labels, int64_t first, int64_t y, int64_t z)
+static void read_row(const struct labels *labels, int64_t first, int64_t y, int64_t z, uint16_t row[4])
 {
     const int64_t *size = labels->size;
-    uint64_t row = 0;
-    if (y < 0 || y >= size[1] || z < 0 || z >= size[2]) {
-        return 0;
-    }
-    const uint16_t *line = labels->label + (z * size[1] + y) * size[0];
-    if (first >= 0 && first + 4 <= size[0]) {
-        const uint16_t *l = line + first;
-        return (uint64_t)l[3] << 48 | (uint64_t)l[2] << 32 | (uint64_t)l[1] << 16 | l[0];
-    }
+    bool within = y >= 0 && y < size[1] && z >= 0 && z < size[2];
+    const uint16_t *line = labels->label + (within ? (z * size[1] + y) * size[0] : 0);
     for (int i = 0; i < 4; i++) {
         int64_t at = size[0] == 1 ? 0 : first + i;
-        row |= at >= 0 && at < size[0] ? (uint64_t)line[at] << 16 * i : 0;
+        row[i] = within && at >= 0 && at < size[0] ? line[at] : 0;
     }
-    return row;
 }
 
 int32_t labels_nearest(const struct labels *labels, const double x[])
@@ -63,17 +55,9 @@ int32_t labels_nearest(const struct labels *labels, const double x[])
     for (int d = 0; d < 3; d++) {
         at[d] = labels->size[d] == 1 ? 0 : (int64_t)floor(v[d] + 0.5);
     }
-    return (int32_t)(row_at(labels, at[0], at[1], at[2]) & UINT16_MAX);
-}
-
-static void read_rows(const struct labels *labels, const int64_t first[3], struct stencil *stencil)
-{
-    uint64_t *row = stencil->row;
-    for (int k = 0; k < stencil->count[2]; k++) {
-        for (int j = 0; j < stencil->count[1]; j++) {
-            *row++ = row_at(labels, first[0], first[1] + j, first[2] + k);
-        }
-    }
+    uint16_t row[4];
+    read_row(labels, at[0], at[1], at[2], row);
+    return row[0];
 }
 
 static void stencil_at(const struct labels *labels, const double x[], struct stencil *stencil)
@@ -105,58 +89,46 @@ static void stencil_at(const struct labels *labels, const double x[], struct ste
         s[2] = 2 * r - 1.5 * r * r;
         s[3] = t * t / 2;
     }
-    read_rows(labels, first, stencil);
-}
-
-/* The voxels of a row with this label: a bit for each. */
-static unsigned same_in_row(uint64_t row, uint16_t label)
-{
-    const uint64_t ones = 0x0001000100010001, low = 0x7fff * ones;
-    uint64_t other = row ^ label * ones; /* 0 where they are equal; then the highest bits of these: */
-    uint64_t equal = ~(((other & low) + low) | other | low) >> 15;
-    return (unsigned)(equal * ((uint64_t)1 << 48 | (uint64_t)1 << 33 | 1 << 18 | 1 << 3) >> 48) & 15;
-}
-
-/* The sums of all subsets of four numbers. */
-static void sum_subsets(const double w[4], double sum[16])
-{
-    sum[0] = 0;
-    for (unsigned set = 1; set < 16; set++) {
-        unsigned first = set & -set, rest = set ^ first;
-        int at = first == 1 ? 0 : first == 2 ? 1 : first == 4 ? 2 : 3;
-        sum[set] = sum[rest] + w[at];
+    for (int r = 0; r < stencil->count[1] * stencil->count[2]; r++) {
+        read_row(labels, first[0], first[1] + r % stencil->count[1], first[2] + r / stencil->count[1],
+                 stencil->row[r]);
     }
+}
+
+/* The sum of the numbers of the voxels of a row with this label. */
+static inline double sum_of(const uint16_t row[4], uint16_t label, const double number[4])
+{
+    double sum = 0;
+    for (int i = 3; i >= 0; i--) {
+        sum += row[i] == label ? number[i] : 0;
+    }
+    return sum;
 }
 
 void labels_mix(const struct labels *labels, const double x[], struct label_mix *mix)
 {
     struct stencil stencil;
-    double sum[16], weight[16];
-    unsigned left[16]; /* voxels of each row that are not in the mix */
+    double weight[16];
     stencil_at(labels, x, &stencil);
-    sum_subsets(stencil.weight[0], sum);
-    int rows = 0;
-    for (int k = 0; k < stencil.count[2]; k++) {
-        for (int j = 0; j < stencil.count[1]; j++) {
-            weight[rows] = stencil.weight[2][k] * stencil.weight[1][j];
-            left[rows++] = 15;
-        }
+    int rows = stencil.count[1] * stencil.count[2];
+    for (int r = 0; r < rows; r++) {
+        weight[r] = stencil.weight[2][r / stencil.count[1]] * stencil.weight[1][r % stencil.count[1]];
     }
     mix->count = 0;
-    for (int first = 0; first < rows;) {
-        if (left[first] == 0) {
-            first++;
-            continue;
+    for (int i = 0; i < 4 * rows; i++) {
+        uint16_t label = stencil.row[i / 4][i % 4];
+        int known = mix->count;
+        while (known > 0 && mix->label[known - 1] != label) {
+            known--;
         }
-        uint16_t label = (uint16_t)(stencil.row[first] >> 16 * __builtin_ctz(left[first]));
-        double share = 0;
-        for (int r = first; r < rows; r++) {
-            unsigned same = same_in_row(stencil.row[r], label);
-            left[r] &= ~same;
-            share += weight[r] * sum[same];
+        if (known == 0) {
+            double share = 0;
+            for (int r = i / 4; r < rows; r++) {
+                share += weight[r] * sum_of(stencil.row[r], label, stencil.weight[0]);
+            }
+            mix->label[mix->count] = label;
+            mix->share[mix->count++] = share;
         }
-        mix->label[mix->count] = label;
-        mix->share[mix->count++] = share;
     }
 }
 
@@ -196,14 +168,12 @@ double labels_difference(const struct labels *labels, const double x[], int32_t 
     struct stencil stencil;
     double value = 0, slope[3] = {0}, world[3];
     stencil_at(labels, x, &stencil);
-    double sum[16], rise[16];
-    sum_subsets(stencil.weight[0], sum);
-    sum_subsets(stencil.slope[0], rise);
     for (int k = 0, r = 0; k < stencil.count[2]; k++) {
         for (int j = 0; j < stencil.count[1]; j++, r++) {
-            unsigned with_a = same_in_row(stencil.row[r], (uint16_t)a),
-                     with_b = same_in_row(stencil.row[r], (uint16_t)b);
-            double more = sum[with_a] - sum[with_b], steeper = rise[with_a] - rise[with_b];
+            const uint16_t *row = stencil.row[r];
+            const double *w = stencil.weight[0], *s = stencil.slope[0];
+            double more = sum_of(row, (uint16_t)a, w) - sum_of(row, (uint16_t)b, w);
+            double steeper = sum_of(row, (uint16_t)a, s) - sum_of(row, (uint16_t)b, s);
             value += more * stencil.weight[1][j] * stencil.weight[2][k];
             slope[0] += steeper * stencil.weight[1][j] * stencil.weight[2][k];
             slope[1] += more * stencil.slope[1][j] * stencil.weight[2][k];
