@@ -103,21 +103,11 @@ int64_t msh_tag(struct msh_reader *r, const char *what, int64_t least, int64_t m
     return whole(r, what, r->msh4, least, most);
 }
 
-int64_t msh_count(struct msh_reader *r, const char *what, int64_t text, int64_t binary)
-{
-    int64_t count = msh_size(r, what, 0, INT64_MAX);
-    int64_t left = r->end - r->at;
-    if (count > left / (r->binary ? binary : text)) {
-        msh_fail(r, "%s: %jd cannot be in the %jd bytes that are left", what, count, left);
-    }
-    return r->status == STATUS_OK ? count : 0;
-}
-
-int64_t msh_count_line(struct msh_reader *r, const char *what, int64_t least)
+int64_t msh_count_line(struct msh_reader *r, const char *what)
 {
     bool binary = r->binary;
     r->binary = false;
-    int64_t count = msh_count(r, what, least, least);
+    int64_t count = msh_size(r, what, 0, INT64_MAX);
     r->binary = binary;
     msh_skip_line(r);
     return count;

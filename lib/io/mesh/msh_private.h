@@ -7,8 +7,8 @@
  *
  * A reader passes through the file once, and adds nodes, elements and groups to lists. After its first
  * failure, every function of this header returns without effect, numbers are the least admitted ones, and
- * loops stop at `reader->status`. A count is accepted only if the rest of the file can contain that many
- * records. (Format: Geuzaine and Remacle, Gmsh reference manual, "File formats".) */
+ * loops stop at `reader->status`. Memory grows with what is read, not with what counts say. (Format: Geuzaine
+ * and Remacle, Gmsh reference manual, "File formats".) */
 #pragma once
 
 #include "base/memory.h"
@@ -96,12 +96,8 @@ int64_t msh_size(struct msh_reader *reader, const char *what, int64_t least, int
 /* The tag of a node or an element: an int in MSH 2, a size in MSH 4. */
 int64_t msh_tag(struct msh_reader *reader, const char *what, int64_t least, int64_t most);
 
-/* A number of records, each of at least `text` or `binary` bytes; the rest of the file must have room for
- * them. */
-int64_t msh_count(struct msh_reader *reader, const char *what, int64_t text, int64_t binary);
-
-/* The same for the count at the head of a section of MSH 2, which is a line of text in all files. */
-int64_t msh_count_line(struct msh_reader *reader, const char *what, int64_t least);
+/* The count at the head of a section of MSH 2, which is a line of text in all files. */
+int64_t msh_count_line(struct msh_reader *reader, const char *what);
 
 /* The next real number. */
 double msh_real(struct msh_reader *reader, const char *what);

@@ -11,7 +11,7 @@
 
 /* ---- $PhysicalNames ---- */
 
-static void read_name(struct msh_reader *r, struct msh_name *name)
+static void read_name(struct msh_reader *r)
 {
     int64_t dim = msh_int(r, "dimension", 0, 3);
     int64_t tag = msh_int(r, "physical tag", 1, MSH_LARGEST_TAG);
@@ -29,7 +29,9 @@ static void read_name(struct msh_reader *r, struct msh_name *name)
         msh_fail(r, "the name is empty, unfinished or longer than %d bytes", INPUT_NAME);
         return;
     }
-    *name = (struct msh_name){msh_key(dim, tag), text, length};
+    if (r->status == STATUS_OK) {
+        r->names[r->name_count++] = (struct msh_name){msh_key(dim, tag), text, length};
+    }
     r->at = text + length + 1;
     msh_skip_line(r);
 }
@@ -40,11 +42,11 @@ void msh_read_names(struct msh_reader *r)
     bool binary = r->binary;
     r->binary = false;
     r->kind = "name";
-    r->name_count = msh_count(r, "number of names", 6, 6);
-    MSH_NEW(r, &r->names, r->name_count);
-    for (int64_t i = 0; r->status == STATUS_OK && i < r->name_count; i++) {
-        r->record = i + 1;
-        read_name(r, &r->names[i]);
+    int64_t count = msh_size(r, "number of names", 0, INT64_MAX);
+    while (r->status == STATUS_OK && r->name_count < count) {
+        MSH_GROW(r, &r->names, r->name_count + 1, &r->name_room);
+        r->record = r->name_count + 1;
+        read_name(r);
     }
     r->binary = binary;
 }
@@ -67,7 +69,7 @@ static int64_t read_entity_tag(struct msh_reader *r, int64_t *dim)
 /* Skip the tags of the entities that bound an entity, which follow its box. */
 static void skip_tags(struct msh_reader *r, const char *what)
 {
-    int64_t count = msh_count(r, what, 2, 4);
+    int64_t count = msh_size(r, what, 0, INT64_MAX);
     for (int64_t i = 0; r->status == STATUS_OK && i < count; i++) {
         (void)msh_int(r, what, -MSH_LARGEST_TAG, MSH_LARGEST_TAG);
     }
@@ -76,7 +78,7 @@ static void skip_tags(struct msh_reader *r, const char *what)
 /* Read the physical groups of an entity. A tag is negative if the group reverses the orientation. */
 static void read_physicals(struct msh_reader *r, int dim, struct msh_entity entity)
 {
-    int64_t count = msh_count(r, "physical groups", 2, 4);
+    int64_t count = msh_size(r, "physical groups", 0, INT64_MAX);
     if (count > MOST_GROUPS) {
         msh_fail(r, "%jd physical groups are more than %d", count, MOST_GROUPS);
     }
@@ -142,7 +144,7 @@ void msh_read_entities(struct msh_reader *r)
         msh_fail(r, r->msh4 ? "stands behind $Elements" : "has no place in MSH 2");
     }
     for (int dim = 0; dim < 4; dim++) {
-        counts[dim] = msh_count(r, "number of entities", 10, 36);
+        counts[dim] = msh_size(r, "number of entities", 0, INT64_MAX);
     }
     for (int dim = 0; dim < 4; dim++) {
         r->kind = msh_entity_kind(dim);
@@ -210,7 +212,7 @@ static void read_node_head(struct msh_reader *r, struct node_block *block, int64
     int64_t dim;
     (void)read_entity_tag(r, &dim);
     block->parameters = msh_int(r, "parametric", 0, 1) == 1 ? dim : 0;
-    block->count = msh_count(r, "number of nodes", 8, 28);
+    block->count = msh_size(r, "number of nodes", 0, INT64_MAX);
     if (block->count > count - block->first) {
         msh_fail(r, "more nodes than the %jd that the section's head says", count);
     }
@@ -222,9 +224,9 @@ void msh_read_nodes(struct msh_reader *r)
                                .most = MSH_LARGEST_TAG,
                                .parameters = strcmp(r->section, "$ParametricNodes") == 0 ? EACH_NODE : 0};
     r->kind = "node";
-    int64_t blocks = r->msh4 ? msh_count(r, "number of blocks", 8, 20) : 1;
+    int64_t blocks = r->msh4 ? msh_size(r, "number of blocks", 0, INT64_MAX) : 1;
     int64_t count =
-        r->msh4 ? msh_count(r, "number of nodes", 8, 28) : msh_count_line(r, "number of nodes", 8);
+        r->msh4 ? msh_size(r, "number of nodes", 0, INT64_MAX) : msh_count_line(r, "number of nodes");
     if (r->msh4) {
         block.least = msh_size(r, "smallest tag", count > 0, MSH_LARGEST_TAG);
         block.most = msh_size(r, "largest tag", count > 0, MSH_LARGEST_TAG);
@@ -309,7 +311,7 @@ static void read_block_head(struct msh_reader *r, struct block *block, int64_t l
             msh_fail(r, "is on %s %jd, which is not in $Entities", msh_entity_kind((int)dim), tag);
         }
         read_type(r, block);
-        block->count = msh_count(r, "number of elements", 4, 16);
+        block->count = msh_size(r, "number of elements", 0, INT64_MAX);
         if (r->status == STATUS_OK && block->type.dim != dim) {
             msh_fail(r, "a %s on an entity of dimension %jd", block->type.name, dim);
         }
@@ -368,9 +370,9 @@ void msh_read_elements(struct msh_reader *r)
     if (!r->has[MSH_NODES]) {
         msh_fail(r, "stands before $Nodes");
     }
-    int64_t blocks = blocked ? msh_count(r, "number of blocks", 8, 20) : INT64_MAX;
+    int64_t blocks = blocked ? msh_size(r, "number of blocks", 0, INT64_MAX) : INT64_MAX;
     int64_t count =
-        blocked ? msh_count(r, "number of elements", 4, 8) : msh_count_line(r, "number of elements", 8);
+        blocked ? msh_size(r, "number of elements", 0, INT64_MAX) : msh_count_line(r, "number of elements");
     for (int k = 0; k < 2 && blocked; k++) {
         (void)msh_size(r, "range of tags", 0, MSH_LARGEST_TAG);
     }
