@@ -18,7 +18,6 @@ struct feb {
     char name[INPUT_NAME + 1]; /* of the part, surface or set */
     bool is_empty;             /* nothing in it yet */
     int64_t first;             /* element at its begin */
-    int64_t copied, most;      /* members that sets took from others; as many as the file has bytes */
     int64_t id;                /* of the node or element, or MSH_NO_TAG */
     char section[64];
 };
@@ -95,9 +94,7 @@ static void add_set(struct feb *f, const char *name)
     }
     for (int64_t e = first - 1; r->status == STATUS_OK && e < end; e++) {
         int64_t node = r->corners[r->msh->elements[e].first];
-        if (f->copied++ == f->most) {
-            msh_fail(r, "the sets have too many members for the size of the file");
-        }
+        input_take_member(r);
         msh_add_element(f->r, MSH_NO_TAG, INPUT_POINT, &node, input_group(f->r, 0, f->name));
     }
     f->is_empty = false;
@@ -241,7 +238,7 @@ static void end(void *context, const char *name, const char *text, int64_t size,
 
 void feb_read(struct msh_reader *r)
 {
-    struct feb f = {.r = r, .most = r->end - r->at};
+    struct feb f = {.r = r};
     const struct xml_handler handler = {&f, begin, end};
     r->section = f.section;
     xml_parse(r, NULL, &handler);

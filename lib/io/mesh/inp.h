@@ -22,7 +22,6 @@ struct inp_set {
 
 struct inp {
     struct msh_reader *r;
-    int64_t size;     /* of the deck, bytes */
     int64_t number;   /* of the line, from 1 */
     const char *line; /* without blanks at its ends; NULL: the end of the deck */
     int64_t length;
@@ -34,10 +33,8 @@ struct inp {
     bool is_apart;    /* the numbers of a set are those of the assembly itself, which are left out */
     char instance[INPUT_NAME + 1];
 
-    bool *is_shell; /* of each element */
-    int64_t shell_room;
-    int64_t set_count, set_room, tried; /* tried: members of sets and ranges */
-    struct inp_set **sets;              /* in the order of the deck; of r->texts */
+    int64_t set_count, set_room;
+    struct inp_set **sets; /* in the order of the deck; of r->texts */
 };
 
 /* ---- inp_read.c ---- */
@@ -63,11 +60,9 @@ void inp_read_section(struct inp *p);
 
 /* ---- inp_groups.c ---- */
 
-/* Add a member to a set; the face of an element with that label ("S1") to a surface. Sets and surfaces must
- * not grow out of proportion to the deck. */
+/* Add a member to a set; the face of an element with that label ("S1") to a surface. */
 void inp_add_member(struct inp *p, struct inp_set *set, int64_t place);
 void inp_add_face(struct inp *p, struct inp_set *set, int64_t place, const char *label);
-void inp_try(struct inp *p);
 
 /* Make groups of sets, sections and surfaces: when all of the deck is read. */
 void inp_join_sets(struct inp *p);

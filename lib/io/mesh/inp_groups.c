@@ -8,26 +8,11 @@
 #include <string.h>
 #include <strings.h>
 
-/* Members of all sets together, and elements of all groups, may be so many for each byte of the deck. */
-#define MOST_PER_BYTE 4
-
 /* ---- members ---- */
-
-static void check_size(struct inp *p, int64_t count)
-{
-    if (count > MOST_PER_BYTE * p->size) {
-        msh_fail(p->r, "the sets have too many members for the size of the deck");
-    }
-}
-
-void inp_try(struct inp *p)
-{
-    check_size(p, p->tried++);
-}
 
 void inp_add_member(struct inp *p, struct inp_set *set, int64_t place)
 {
-    inp_try(p);
+    input_take_member(p->r);
     MSH_GROW(p->r, &set->member, set->count + 1, &set->room);
     if (p->r->status == STATUS_OK) {
         set->member[set->count++] = place;
@@ -48,7 +33,7 @@ static int64_t group_of(struct inp *p, struct inp_set *set, int dim)
 static void add_of_surface(struct inp *p, const struct inp_set *set, int type, const int64_t node[])
 {
     msh_add_element(p->r, MSH_NO_TAG, type, node, -set->number);
-    check_size(p, p->r->msh->element_count);
+    input_take_member(p->r);
 }
 
 static void add_face(struct inp *p, const struct inp_set *set, int linear, const int64_t node[], int f)
@@ -71,9 +56,10 @@ void inp_add_face(struct inp *p, struct inp_set *set, int64_t place, const char 
     int linear = msh_type(type).linear,
         face = label[0] != '\0' && isdigit((unsigned char)label[1]) && label[2] == '\0' ? label[1] - '0' : 0;
     int kind = toupper((unsigned char)label[0]);
-    bool side = p->is_shell[place] && (strcasecmp(label, "SPOS") == 0 || strcasecmp(label, "SNEG") == 0 ||
-                                       (kind != 'E' && (face == 1 || face == 2)));
-    face -= p->is_shell[place] && kind != 'E' ? 2 : 0;
+    bool is_shell = r->msh->elements[place].is_shell;
+    bool side = is_shell && (strcasecmp(label, "SPOS") == 0 || strcasecmp(label, "SNEG") == 0 ||
+                             (kind != 'E' && (face == 1 || face == 2)));
+    face -= is_shell && kind != 'E' ? 2 : 0;
     memcpy(node, &r->corners[r->msh->elements[place].first],
            (size_t)msh_type(type).node_count * sizeof *node);
     if (side) {
@@ -181,5 +167,5 @@ void inp_free_sets(struct inp *p)
     for (int64_t s = 0; s < p->set_count; s++) {
         free(p->sets[s]->member);
     }
-    FREE_ALL(p->is_shell, p->sets);
+    free(p->sets);
 }

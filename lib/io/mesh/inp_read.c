@@ -216,10 +216,9 @@ static void read_element(struct inp *p, int type, bool is_shell)
         node[2] = node[1];
         node[1] = end;
     }
-    MSH_GROW(r, &p->is_shell, p->r->msh->element_count + 1, &p->shell_room);
+    msh_add_element(r, tag, type, node, 0);
     if (r->status == STATUS_OK) {
-        p->is_shell[p->r->msh->element_count] = is_shell;
-        msh_add_element(p->r, tag, type, node, 0);
+        r->msh->elements[r->msh->element_count - 1].is_shell = is_shell;
     }
 }
 
@@ -332,7 +331,7 @@ static void read_keyword(struct inp *p)
 
 void inp_read(struct msh_reader *r)
 {
-    struct inp p = {.r = r, .size = r->end - r->at};
+    struct inp p = {.r = r};
     input_at(r, "deck", 0);
     skip_data(&p); /* there is none: a deck begins with a keyword */
     while (p.line != NULL && r->status == STATUS_OK) {

@@ -116,7 +116,7 @@ static void add_range(struct inp *p, struct inp_set *set, const int64_t range[3]
          i++) {
         for (int64_t k = 0; p->r->status == STATUS_OK && k < index->run[i].count; k++) {
             int64_t tag = index->run[i].tag + k;
-            inp_try(p);
+            input_take_member(p->r);
             if (tag >= range[0] && tag <= range[1] && (tag - range[0]) % range[2] == 0) {
                 set->found++;
                 inp_add_member(p, set, index->run[i].place + k);

@@ -253,6 +253,13 @@ int64_t input_group(struct msh_reader *r, int dim, const char *text)
     return *key;
 }
 
+void input_take_member(struct msh_reader *r)
+{
+    if (r->members-- <= 0) {
+        msh_fail(r, "the sets have too many members for the size of the file");
+    }
+}
+
 void input_leave_out(struct msh_reader *r, const char *what)
 {
     char item[80] = ", ";

@@ -31,6 +31,7 @@ struct msh_element {
     int64_t key, entity; /* while it is read: its group and its entity (msh_key); 0: none */
     int32_t group;       /* index into groups, -1: none */
     int8_t type;         /* gmsh's number of the type, one that msh_type knows */
+    bool is_shell;       /* while a deck is read: it has sides S1 and S2 */
 };
 
 /* A mesh file as it is: elements of all dimensions, in the order of the file. What is in several groups is an

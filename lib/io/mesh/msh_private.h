@@ -79,6 +79,7 @@ struct msh_reader {
     struct owned texts; /* those of names that are not in the file */
     void *numbered;     /* a tree of what input_name numbers */
     int64_t no_number;  /* what it gives after a failure */
+    int64_t members;    /* that sets and surfaces may still take from others */
     char left_out[320]; /* what is not read, ", " before each */
     int64_t entity_count, entity_room;
     struct msh_entity *entities; /* ascending in (key, group) */
@@ -212,6 +213,10 @@ int64_t *input_name(struct msh_reader *r, int kind, const char *text, size_t len
 /* The key of a new group; of the group of that dimension and name, which may be new. */
 int64_t input_add_group(struct msh_reader *r, int dim, const char *text, int64_t length);
 int64_t input_group(struct msh_reader *r, int dim, const char *text);
+
+/* A set or surface takes a member from another one: they may take so many for each byte of the file. */
+enum { MEMBERS_PER_BYTE = 3 };
+void input_take_member(struct msh_reader *r);
 
 /* Note what of the file is left out, each thing once. */
 void input_leave_out(struct msh_reader *r, const char *what);

@@ -223,6 +223,7 @@ enum status msh_parse(struct msh *msh, const char *bytes, size_t size, const cha
     size -= mark;
     struct msh_reader reader = {
         .at = bytes, .end = bytes + size, .error = error, .msh = msh, .region_array = region_array};
+    reader.members = MEMBERS_PER_BYTE * (int64_t)size;
     const struct format *format = find_format(bytes, size);
     *msh = (struct msh){0};
     if (is_mesh1(bytes, size)) {
