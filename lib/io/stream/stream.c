@@ -37,6 +37,16 @@ void section_free(struct section *section)
     *section = (struct section){0};
 }
 
+void stream_free_input(struct stream *stream)
+{
+    if (stream->is_file) {
+        munmap(stream->mapping, stream->mapping_size);
+    } else {
+        free(stream->mapping);
+    }
+    stream->mapping = NULL;
+}
+
 void stream_free(struct stream *stream)
 {
     for (int64_t i = 0; i < stream->section_count; i++) {
@@ -44,9 +54,7 @@ void stream_free(struct stream *stream)
     }
     free(stream->sections);
     names_free(&stream->provenance);
-    if (stream->mapping != NULL) {
-        munmap(stream->mapping, stream->mapping_size);
-    }
+    stream_free_input(stream);
     stream_init(stream);
 }
 

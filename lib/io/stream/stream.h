@@ -14,7 +14,7 @@ enum { STREAM_SECTION_LIMIT = 1 << 14 }; /* sections of a stream */
 
 enum element_type { TYPE_I4, TYPE_I8, TYPE_F4, TYPE_F8 };
 
-/* One table: rows x cols elements, row-major, at least 8-byte aligned (64 when owned or mapped binary). */
+/* One table: rows x cols elements, row-major, at least 8-byte aligned (64 when owned or of a file). */
 struct section {
     char *name; /* e.g. "nodes.x": letters, digits, '.', '_', '-'; unique in the stream */
     enum element_type type;
@@ -30,9 +30,9 @@ struct stream {
                                  moves those behind it */
     int64_t section_count;
     struct names provenance; /* "# @" lines without "# @ " and newline, oldest first */
-    void *mapping;           /* of the input, or NULL */
+    void *mapping;           /* the bytes of the input, or NULL: */
     size_t mapping_size;
-    bool is_file; /* the mapping is that of a file, else the only copy */
+    bool is_file; /* mapped from a file, else from malloc and the only copy */
 };
 
 /* An empty stream. */

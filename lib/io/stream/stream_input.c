@@ -1,4 +1,4 @@
-/* The bytes of a stream: a regular file is mapped, everything else is read into a mapping of its own. */
+/* The bytes of a stream: a regular file is mapped, everything else is read. */
 #include "io/files/textfile.h"
 #include "io/stream/stream_private.h"
 
@@ -27,50 +27,23 @@ static bool map_file(int descriptor, struct stream *stream)
     return true;
 }
 
-/* Double the mapping; new pages take memory when they are written. */
-static enum status grow(struct stream *stream, struct error *error)
+static bool is_stream(const char *bytes, size_t size)
 {
-    size_t size = stream->mapping_size, larger = size > 0 ? 2 * size : BLOCK_SIZE;
-    void *mapping = size > 0 ? mremap(stream->mapping, size, larger, MREMAP_MAYMOVE)
-                             : mmap(NULL, larger, PROT_READ | PROT_WRITE,
-                                    MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-    if (mapping == MAP_FAILED) {
-        return fail_memory(error, "input");
-    }
-    stream->mapping = mapping;
-    stream->mapping_size = larger;
-    return STATUS_OK;
-}
-
-/* Read to the end, or enough to tell that it is no stream. */
-static enum status read_all(int descriptor, struct stream *stream, size_t *size, struct error *error)
-{
-    size_t got = 1;
-    (void)fcntl(descriptor, F_SETPIPE_SZ, BLOCK_SIZE); /* fewer context switches for a pipe, if granted */
-    for (*size = 0; got > 0; *size += got) {
-        if (*size >= 64 && !starts_with(stream->mapping, *size, FIRST_LINE)) {
-            return STATUS_OK;
-        }
-        if (*size == stream->mapping_size) {
-            RETURN_IF_ERROR(grow(stream, error));
-        }
-        RETURN_IF_ERROR(descriptor_read(descriptor, (char *)stream->mapping + *size,
-                                        stream->mapping_size - *size, &got, error));
-    }
-    return STATUS_OK;
+    return starts_with(bytes, size, FIRST_LINE);
 }
 
 enum status input_open(struct input *input, struct stream *stream, int descriptor, struct error *error)
 {
-    size_t size = 0;
-    if (map_file(descriptor, stream)) {
-        size = stream->mapping_size;
-    } else {
-        RETURN_IF_ERROR(read_all(descriptor, stream, &size, error));
+    char *bytes = NULL;
+    enum status status = STATUS_OK;
+    if (!map_file(descriptor, stream)) {
+        (void)fcntl(descriptor, F_SETPIPE_SZ, BLOCK_SIZE); /* fewer context switches for a pipe, if granted */
+        status = descriptor_read_all(descriptor, SIZE_MAX, is_stream, &bytes, &stream->mapping_size, error);
+        stream->mapping = bytes;
     }
     input->at = input->start = stream->mapping;
-    input->end = input->start + size;
-    return STATUS_OK;
+    input->end = input->start + stream->mapping_size;
+    return status;
 }
 
 enum status input_line(struct input *input, const char **line, size_t *length, struct error *error)

@@ -28,13 +28,16 @@ MUST_CHECK enum status stream_add(struct stream *stream, struct section *section
 /* stream.c: release what a section owns; it becomes empty. */
 void section_free(struct section *section);
 
+/* stream.c: release the bytes of the input. */
+void stream_free_input(struct stream *stream);
+
 /* stream.c: release the pages of a section that is in the mapping: those of a file, which are read again when
  * needed, or `for_good` all. */
 void section_give_back(const struct stream *stream, const struct section *section, bool for_good);
 
 #define FIRST_LINE "# mts 1\n"
 
-/* stream_input.c: bytes of the stream in order; its mapping holds them all. */
+/* stream_input.c: the bytes of the stream's input. */
 struct input {
     const char *start, *at, *end; /* the first byte, the next one, behind the last one */
 };

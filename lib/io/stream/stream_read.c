@@ -7,7 +7,6 @@
 #include <locale.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/mman.h>
 #include <zlib.h>
 
 /* ---- the header line of a section: "# NAME TYPE ROWS COLS [key=value ...]" ---- */
@@ -333,9 +332,8 @@ done:
     }
     uselocale(previous);
     freelocale(c_locale);
-    if (!reader.binary && !stream->is_file && stream->mapping != NULL) { /* all is copied */
-        munmap(stream->mapping, stream->mapping_size);
-        stream->mapping = NULL;
+    if (!reader.binary && !stream->is_file) { /* all is copied */
+        stream_free_input(stream);
     }
     if (status != STATUS_OK) {
         stream_free(stream);
