@@ -5,7 +5,7 @@
  * where bodies touch or overlap a little. Cells that share only a node are not connected by it; the node
  * itself sees what each of these cells sees. A neighbour is visible, or it is so from a node of the
  * point's cells by way of which the path is hardly longer than straight: along a concave side few are
- * missing. */
+ * missing. If cells have sides, a point sees the nodes of its own side only, through the cells of that. */
 #pragma once
 
 #include "approx/cells/cells.h"
