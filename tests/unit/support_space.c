@@ -201,8 +201,8 @@ TEST(inclusions)
         }
         options.side = halves.side;
         GOOD(support_space_build(&options, &halves.cells, halves.radius, &space, &error));
-        GOOD(support_build(&options, &space, &at_nodes, halves.cells.node_count, halves.cells.x,
-                                 "nodes", &lists, &error));
+        GOOD(support_build(&options, &space, &at_nodes, halves.cells.node_count, halves.cells.x, "nodes",
+                           &lists, &error));
         assert_true(lists.fewest >= 3);
     }
 }
