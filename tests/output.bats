@@ -46,7 +46,7 @@ told() {
 }
 
 @test "a file, standard input, a pipe and -o, in one thread or in several: the same bytes" {
-    for command in "${writers[@]}" "interp -p square.mts u.dat" "warp --field slice.nii u.dat"; do
+    for command in "${writers[@]}" "ipoints -a 0.1 -k 2.4 square.mts" "interp -p square.mts u.dat" "warp --field slice.nii u.dat"; do
         $command > file 2> note
         OMP_NUM_THREADS=3 $command -o named 2> note
         cmp file named

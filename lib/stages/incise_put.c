@@ -233,11 +233,13 @@ static enum status take_fibres(const struct cut_body *whole, const struct stream
 static enum status put_fibres(struct stream *stream, int dim, int64_t cell_count, double **fibre,
                               struct error *error)
 {
+    const struct ipoints_options options = {.smoothed = true};
     char attributes[64];
+    int64_t unresolved;
     if (*fibre == NULL) {
         return STATUS_OK;
     }
-    RETURN_IF_ERROR(stage_ipoints(stream, &(struct ipoints_options){0}, error));
+    RETURN_IF_ERROR(stage_ipoints(stream, &options, &unresolved, error));
     return stream_put(stream, "points.fibre", TYPE_F8, cell_count, dim,
                       vector_attributes(dim, "1", attributes), array_take(fibre), true, error);
 }

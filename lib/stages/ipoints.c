@@ -9,19 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Integration points: x[count * dim], weight[count], cell[count]. */
-struct points {
-    int64_t count;
-    double *x, *weight;
-    int32_t *cell;
-};
-
-static void free_points(struct points *points)
-{
-    FREE_ALL(points->x, points->weight, points->cell);
-}
-
-static enum status new_points(int64_t count, int dim, struct points *points, struct error *error)
+static enum status new_points(int64_t count, int dim, struct adaptive_points *points, struct error *error)
 {
     RETURN_IF_ERROR(NEW_ARRAY(&points->x, count * dim, error));
     RETURN_IF_ERROR(NEW_ARRAY(&points->weight, count, error));
@@ -31,7 +19,7 @@ static enum status new_points(int64_t count, int dim, struct points *points, str
 }
 
 /* One point for each smoothed cell, or those of a rule. */
-static enum status cell_points(const struct cells *cells, int per_cell, struct points *points,
+static enum status cell_points(const struct cells *cells, int per_cell, struct adaptive_points *points,
                                struct error *error)
 {
     struct quadrature_rule rule;
@@ -52,8 +40,8 @@ static enum status cell_points(const struct cells *cells, int per_cell, struct p
 
 /* A lattice of points, at least 2 along each axis, over the box of the nodes, x fastest; weights of the
  * trapezium rule. */
-static enum status lattice_points(const struct cells *nodes, const int64_t n[3], struct points *points,
-                                  struct error *error)
+static enum status lattice_points(const struct cells *nodes, const int64_t n[3],
+                                  struct adaptive_points *points, struct error *error)
 {
     int dim = nodes->dim;
     int64_t count = 1;
@@ -82,8 +70,30 @@ static enum status lattice_points(const struct cells *nodes, const int64_t n[3],
     return STATUS_OK;
 }
 
-static enum status put_points(struct stream *stream, int dim, const char *rule, struct points *points,
-                              struct error *error)
+/* radius[]: those recorded in the stream, unless options give others. */
+static enum status adaptive_radii(const struct stream *stream, const struct ipoints_options *options,
+                                  const struct cells *cells, double *radius, struct error *error)
+{
+    const struct section *recorded = stream_find(stream, "support.radius");
+    if (recorded == NULL || options->given_radius) {
+        return stage_radii(stream, &options->refinement.support, cells->node_count, cells->x, radius, error);
+    }
+    RETURN_IF_ERROR(stream_view(stream, "support.radius", &recorded, error));
+    memcpy(radius, recorded->data, (size_t)recorded->rows * sizeof *radius);
+    return STATUS_OK;
+}
+
+static enum status adaptive_cell_points(const struct stream *stream, const struct ipoints_options *options,
+                                        const struct cells *cells, struct adaptive_points *points,
+                                        struct error *error)
+{
+    NEW_SCRATCH(double, radius, cells->node_count, error);
+    RETURN_IF_ERROR(adaptive_radii(stream, options, cells, radius, error));
+    return adaptive_points_build(&options->refinement, cells, radius, points, error);
+}
+
+static enum status put_points(struct stream *stream, int dim, const char *rule,
+                              struct adaptive_points *points, struct error *error)
 {
     char vector[64], attributes[96];
     int64_t count = points->count;
@@ -134,27 +144,33 @@ static enum status put_faces(struct stream *stream, const struct cells *cells, b
     return put_face_points(stream, cells, &view, error);
 }
 
-enum status stage_ipoints(struct stream *stream, const struct ipoints_options *options, struct error *error)
+enum status stage_ipoints(struct stream *stream, const struct ipoints_options *options, int64_t *unresolved,
+                          struct error *error)
 {
     struct cells cells;
-    FREED_BY(free_points) struct points points = {0};
-    bool lattice = options->lattice[0] > 0, smoothed = options->gauss_points == 0;
-    int per_cell = smoothed ? 1 : options->gauss_points;
+    FREED_BY(adaptive_points_free) struct adaptive_points points = {0};
+    bool lattice = options->lattice[0] > 0;
+    int per_cell = options->smoothed ? 1 : options->gauss_points;
     char rule[32];
+    *unresolved = 0;
     RETURN_IF_ERROR(lattice ? stream_nodes(stream, &cells.dim, &cells.node_count, &cells.x, error)
                             : stream_cells(stream, true, &cells, error));
     if (lattice) {
         snprintf(rule, sizeof rule, "lattice");
         RETURN_IF_ERROR(lattice_points(&cells, options->lattice, &points, error));
+    } else if (options->adaptive) {
+        snprintf(rule, sizeof rule, "adaptive");
+        RETURN_IF_ERROR(adaptive_cell_points(stream, options, &cells, &points, error));
+        *unresolved = points.unresolved;
     } else {
-        snprintf(rule, sizeof rule, smoothed ? "conforming" : "gauss%d", per_cell);
+        snprintf(rule, sizeof rule, options->smoothed ? "conforming" : "gauss%d", per_cell);
         RETURN_IF_ERROR(cell_points(&cells, per_cell, &points, error));
     }
     /* Sections made from other points are void. */
     sections_remove(stream, MADE_WITH_POINTS, MADE_WITH_SHAPES);
     RETURN_IF_ERROR(put_points(stream, cells.dim, rule, &points, error));
     if (!lattice) {
-        RETURN_IF_ERROR(put_faces(stream, &cells, !smoothed, error));
+        RETURN_IF_ERROR(put_faces(stream, &cells, !options->smoothed, error));
     }
     return STATUS_OK;
 }

@@ -5,18 +5,29 @@
 
 #include "stages/views.h"
 
+#include "approx/adaptive/adaptive.h"
 #include "approx/support/support.h"
 
-/* How ipoints places integration points; zeros: one for each smoothed cell. */
+/* How ipoints places integration points; by default for smoothed cells. */
 struct ipoints_options {
-    int gauss_points;   /* points per cell, of a rule */
-    int64_t lattice[3]; /* if lattice[0] > 0: a regular lattice of evaluation points over the box of the
+    bool smoothed;    /* one point per cell, gradients smoothed over the cell */
+    int gauss_points; /* else: points per cell */
+    bool adaptive;    /* else: adaptively subdivided cells, see `refinement` */
+    struct adaptive_options refinement;
+    bool given_radius;  /* use the radius or factor of refinement.support; else the stream's radii, if any */
+    int64_t lattice[3]; /* else, if lattice[0] > 0: a regular lattice of evaluation points over the box of the
                            nodes, with this number along each axis */
 };
 
-/* Add the sections of ipoints: points.*, faces, faces.cell, facepoints.x (lib/README.md). */
+/* Add the sections of ipoints: points.*, faces, faces.cell, facepoints.x (lib/README.md). *unresolved counts
+ * the cells that are too coarse even at the last level of adaptive integration. */
 MUST_CHECK enum status stage_ipoints(struct stream *stream, const struct ipoints_options *options,
-                                     struct error *error);
+                                     int64_t *unresolved, struct error *error);
+
+/* radius[node_count] as the stage `support` sets them: constant, or a factor times the local spacing, that of
+ * the cells if there are any. */
+MUST_CHECK enum status stage_radii(const struct stream *stream, const struct support_options *options,
+                                   int64_t node_count, const double *x, double *radius, struct error *error);
 
 /* Statistics of one of the lists of `support`, */
 struct list_report {

@@ -24,12 +24,18 @@ static enum status local_radii(const struct stream *stream, const struct support
     return support_radii(options, node_count, spacing, radius, error);
 }
 
+enum status stage_radii(const struct stream *stream, const struct support_options *options,
+                        int64_t node_count, const double *x, double *radius, struct error *error)
+{
+    return options->radius > 0.0 ? support_radii(options, node_count, NULL, radius, error)
+                                 : local_radii(stream, options, node_count, x, radius, error);
+}
+
 static enum status put_radii(struct stream *stream, const struct support_options *options, int64_t node_count,
                              const double *x, struct error *error)
 {
     NEW_SCRATCH(double, radius, node_count, error);
-    RETURN_IF_ERROR(options->radius > 0.0 ? support_radii(options, node_count, NULL, radius, error)
-                                          : local_radii(stream, options, node_count, x, radius, error));
+    RETURN_IF_ERROR(stage_radii(stream, options, node_count, x, radius, error));
     return stage_record(stream, &(struct recorded){NULL, *options, options->mls}, node_count, radius, error);
 }
 

@@ -12,7 +12,8 @@
 static inline void make_tables_of(const struct cloud *cloud, int gauss_points, double factor,
                                   struct stream *stream, struct assembly *assembly)
 {
-    struct ipoints_options points = {.gauss_points = gauss_points};
+    int64_t unresolved;
+    struct ipoints_options points = {.smoothed = gauss_points == 0, .gauss_points = gauss_points};
     struct support_options support = support_defaults(cloud->dim);
     struct support_report report;
     support.factor = factor;
@@ -21,7 +22,7 @@ static inline void make_tables_of(const struct cloud *cloud, int gauss_points, d
     GOOD(stream_put(stream, "nodes.x", TYPE_F8, cloud->node_count, cloud->dim, "", cloud->x, false, &error));
     GOOD(stream_put(stream, "cells", TYPE_I4, cloud->cell_count, cloud->dim + 1, "", cloud->cells, false,
                     &error));
-    GOOD(stage_ipoints(stream, &points, &error));
+    GOOD(stage_ipoints(stream, &points, &unresolved, &error));
     GOOD(stage_support(stream, &support, &report, &error));
     GOOD(stage_shapefn(stream, &support.mls, &error));
     GOOD(stage_tables(stream, assembly, &error));

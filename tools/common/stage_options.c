@@ -41,7 +41,9 @@ static void fill_one(const struct tool *tool, struct stream *stream, const char 
     struct recorded recorded;
     TOOL_TRY(tool, stage_recorded(stream, "support", &recorded, &error));
     if (strcmp(stage, "ipoints") == 0) {
-        TOOL_TRY(tool, stage_ipoints(stream, &(struct ipoints_options){0}, &error));
+        const struct ipoints_options options = {.smoothed = true};
+        int64_t unresolved;
+        TOOL_TRY(tool, stage_ipoints(stream, &options, &unresolved, &error));
     } else if (strcmp(stage, "support") == 0) {
         struct support_options options = support_defaults(recorded.support.mls.dim);
         struct support_report report;
