@@ -3,7 +3,7 @@
 import os
 import shutil
 import subprocess
-import threading
+import tempfile
 
 from . import stream as streams
 
@@ -64,8 +64,8 @@ class Pipe:
         """Run, and write what the last program writes to a file, which appears only when all have succeeded."""
         new = f"{os.fspath(path)}.{os.getpid()}.new"
         try:
-            with open(new, "wb") as file:
-                self._run(note, file)
+            with open(new, "wb") as file, self._output(note) as output:
+                shutil.copyfileobj(output, file)
             os.replace(new, path)
         finally:
             if os.path.exists(new):
@@ -75,79 +75,42 @@ class Pipe:
         """Run, and return what the last program writes, as bytes.
 
         note: called with each line that a program writes on standard error, as it comes (progress, notes); without it these are kept in
-        notes. The first program that fails raises ToolError.
+        notes. The first program that fails raises ToolError, and those behind it do not run.
         """
-        return self._run(note, subprocess.PIPE)
+        with self._output(note) as output:
+            return output.read()
 
-    def _run(self, note, target):
+    def _output(self, note):
+        """What the last program writes, as a file. Each program reads all of its input before it writes: they run one after the other."""
         if not self.stages:
             raise ValueError("a pipe without a program")
         self.notes = []
-        before = None
-        processes, threads, lines = [], [], []
+        source = open(os.devnull, "rb")
         if self.source is not None:
-            before = subprocess.PIPE
-        try:
-            for number, stage in enumerate(self.stages):
-                last = number + 1 == len(self.stages)
-                process = subprocess.Popen(
-                    [program(stage[0]), *stage[1:]],
-                    stdin=before if before is not None else subprocess.DEVNULL,
-                    stdout=target if last else subprocess.PIPE,
-                    stderr=subprocess.PIPE,
-                )
-                if number > 0:
-                    before.close()  # the program before gets SIGPIPE when this one ends
-                before = process.stdout
-                processes.append(process)
-                lines.append([])
-                threads.append(threading.Thread(target=self._listen, args=(process.stderr, lines[-1], note)))
-                threads[-1].start()
-            if self.source is not None:
-                threads.append(threading.Thread(target=_feed, args=(processes[0].stdin, self.source)))
-                threads[-1].start()
-            output = processes[-1].stdout.read() if target is subprocess.PIPE else None
-        except BaseException:
-            for process in processes:
+            source = tempfile.TemporaryFile()
+            streams.write(self.source, source)
+        for stage in self.stages:
+            source.seek(0)
+            with source:
+                source = self._stage(stage, source, note or self.notes.append)
+        source.seek(0)
+        return source
+
+    def _stage(self, stage, source, note):
+        """What one program writes, as a file."""
+        target, line = tempfile.TemporaryFile(), ""
+        with subprocess.Popen([program(stage[0]), *stage[1:]], stdin=source, stdout=target, stderr=subprocess.PIPE) as process:
+            try:
+                for line in process.stderr:
+                    line = line.decode(errors="replace").rstrip("\n")
+                    note(line)
+            except BaseException:
                 process.kill()
-            raise
-        finally:
-            for process in processes:
-                process.wait()
-            for thread in threads:
-                thread.join()
-            for process in processes:
-                for file in (process.stdout, process.stderr):
-                    if file is not None:
-                        file.close()
-        self._judge(processes, lines)
-        return output
-
-    def _listen(self, file, lines, note):
-        for line in file:
-            text = line.decode(errors="replace").rstrip("\n")
-            lines.append(text)
-            if note is None:
-                self.notes.append(text)
-            else:
-                note(text)
-
-    def _judge(self, processes, lines):
-        """Raise what the first failure says; a program that could not write on fails because of one behind it."""
-        failed = [k for k, process in enumerate(processes) if process.returncode != 0]
-        causes = [k for k in failed if processes[k].returncode not in (-13, 141)] or failed
-        if causes:
-            k = causes[0]
-            raise ToolError(self.stages[k][0], processes[k].returncode, lines[k][-1] if lines[k] else "")
+                raise
+        if process.returncode != 0:
+            raise ToolError(stage[0], process.returncode, line)
+        return target
 
 
 def _text(argument):
     return argument if isinstance(argument, str) else os.fspath(argument) if isinstance(argument, os.PathLike) else str(argument)
-
-
-def _feed(file, source):
-    try:
-        with file:
-            streams.write(source, file)
-    except BrokenPipeError:
-        pass  # the program says why it did not read on
