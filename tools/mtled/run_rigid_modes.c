@@ -16,59 +16,41 @@ struct bodies {
     int32_t *of_node;          /* node_count; nodes without cell are bodies of their own */
     int64_t *cell;             /* count: one of its cells, whose region is named in messages */
     bool *touches;             /* count: a contact acts on it, with a rigid surface or a constrained body */
-    bool *stays;               /* count: it is constrained in some direction, or touches */
     struct rigid_modes *modes; /* count */
 };
 
-/* Mark the bodies of the nodes of `at`. */
-static void mark_bodies(const struct bodies *bodies, const struct boundary_averages *at, bool *marked)
-{
-    for (int64_t a = 0; a < at->count; a++) {
-        marked[bodies->of_node[at->node[a]]] = true;
-    }
-}
-
-/* Mark bodies of a contact between facets as touching if another one of them stays. Returns whether more
- * bodies touch. */
-static bool hold_each_other(struct bodies *bodies, const struct contact *contact, bool *there)
-{
-    int64_t staying = 0;
-    bool more = false;
-    memset(there, 0, (size_t)bodies->count * sizeof *there);
-    mark_bodies(bodies, contact->points, there);
-    mark_bodies(bodies, &contact->between->opposite.rows, there);
-    for (int64_t b = 0; b < bodies->count; b++) {
-        staying += there[b] && bodies->stays[b];
-    }
-    for (int64_t b = 0; b < bodies->count; b++) {
-        if (there[b] && !bodies->touches[b] && staying > (bodies->stays[b] ? 1 : 0)) {
-            bodies->touches[b] = bodies->stays[b] = more = true;
-        }
-    }
-    return more;
-}
-
-/* Find the bodies on which contacts act. */
+/* Find the bodies on which contacts act: with a rigid surface; or with other bodies, if any of those that
+ * hang together by contacts is constrained or touches a rigid surface. */
 static enum status find_touching(const struct solid_system *system, struct bodies *bodies,
                                  struct error *error)
 {
-    bool more = true;
     int all = system->dim == 2 ? 3 : 6;
-    NEW_SCRATCH(bool, there, bodies->count, error);
+    NEW_SCRATCH(int32_t, first, bodies->count, error); /* see sets.h */
+    NEW_SCRATCH(int32_t, joined, bodies->count, error);
+    NEW_SCRATCH(bool, stays, bodies->count, error);
+    for (int32_t b = 0; b < bodies->count; b++) {
+        first[b] = b;
+    }
     for (int64_t c = 0; c < system->contact_count; c++) {
-        if (system->contacts[c].between == NULL) {
-            mark_bodies(bodies, &system->contact_points[c], bodies->touches);
+        const struct contact_between *between = system->contacts[c].between;
+        const struct boundary_averages *points = &system->contact_points[c];
+        for (int64_t p = 0; p < points->count; p++) {
+            int32_t b = bodies->of_node[points->node[p]];
+            bodies->touches[b] |= between == NULL;
+            set_join(first, bodies->of_node[points->node[0]], b);
+        }
+        for (int64_t p = 0; between != NULL && p < between->opposite.rows.count; p++) {
+            set_join(first, bodies->of_node[points->node[0]],
+                     bodies->of_node[between->opposite.rows.node[p]]);
         }
     }
-    for (int64_t b = 0; b < bodies->count; b++) {
-        bodies->stays[b] = bodies->touches[b] || bodies->modes[b].translations + bodies->modes[b].turns < all;
+    for (int32_t b = 0; b < bodies->count; b++) {
+        joined[set_first(first, b)]++;
+        stays[set_first(first, b)] |=
+            bodies->touches[b] || bodies->modes[b].translations + bodies->modes[b].turns < all;
     }
-    while (more) {
-        more = false;
-        for (int64_t c = 0; c < system->contact_count; c++) {
-            const struct contact *contact = &system->contacts[c];
-            more = (contact->between != NULL && hold_each_other(bodies, contact, there)) || more;
-        }
+    for (int32_t b = 0; b < bodies->count; b++) {
+        bodies->touches[b] |= joined[set_first(first, b)] > 1 && stays[set_first(first, b)];
     }
     return STATUS_OK;
 }
@@ -87,14 +69,13 @@ static enum status bodies_find(const struct model *model, struct bodies *bodies,
     for (int64_t c = 0; c < cells->count; c++) {
         bodies->cell[bodies->of_node[cells->node[c * (cells->dim + 1)]]] = c;
     }
-    RETURN_IF_ERROR(NEW_ARRAY(&bodies->stays, bodies->count, error));
     RETURN_IF_ERROR(system_rigid_modes(system, bodies->count, bodies->of_node, bodies->modes, error));
     return find_touching(system, bodies, error);
 }
 
 static void bodies_free(struct bodies *bodies)
 {
-    FREE_ALL(bodies->of_node, bodies->cell, bodies->touches, bodies->stays, bodies->modes);
+    FREE_ALL(bodies->of_node, bodies->cell, bodies->touches, bodies->modes);
 }
 
 /* text = a direction with positive largest component, without round-off. */
