@@ -107,10 +107,6 @@ _Noreturn void run_fail(struct run *run, enum status status, const char *format,
 void run_start_read(struct run *run);
 void run_start(struct run *run);
 
-/* For an equilibrium at this share of the load, which was evaluated last: exits with a verdict where the
- * material law is not strongly elliptic in a large part of the body. In the final state notes a small one. */
-void run_stability_elliptic(struct run *run, double load, bool final);
-
 /* Exits with a verdict where a body has a free rigid-body mode and no contact acts on it; with -v, reports
  * the modes that only contacts prevent. */
 void run_check_rigid_modes(struct run *run);
@@ -250,18 +246,16 @@ MUST_CHECK enum status run_folds_state(struct run *run, const struct state *stat
 /* Where and from when on, with the remedy, into text[size]; empty when no fold was seen. */
 void run_folds_describe(const struct run *run, char *text, size_t size);
 
-/* After the last step: a body that folds ends the run with a verdict, unless the scene allows it; what is to
- * be noted is. */
+/* After the last step: a body that folds, or an equilibrium that was not stable, ends the run with a verdict,
+ * unless the scene allows it; what is to be noted is. */
 void run_folds_judge(struct run *run);
 
 /* ---- stability ---- */
 
-/* Check a state of equilibrium. */
-void run_stability_check(struct run *run, double load);
+/* Check an equilibrium at this share of the load, which was evaluated last: exits with a verdict where the
+ * material law is not strongly elliptic in a large part of the body. In the final state notes a small one. */
+void run_stability_check(struct run *run, double load, bool final);
 
 /* Note where the body has left a state near equilibrium on the way, unless a fold or the present state's
  * stability is the verdict. */
 void run_stability_left(const struct run *run);
-
-/* What was seen, into text[size]; empty when all is stable. */
-void run_stability_describe(const struct run *run, char *text, size_t size);

@@ -28,7 +28,7 @@ static void judge(struct run *run, const struct statics_report *report)
                           ? "contacts, whose points go from facet to facet, admit no"
                           : "round-off admits no");
         }
-        run_stability_elliptic(run, 1.0, true);
+        run_stability_check(run, 1.0, true);
         run_contacts_penetrate(run, report->move, report->penetration_allowed, true);
         run_folds_judge(run);
         run_stability_left(run);
@@ -239,7 +239,6 @@ void run_quasi_static(struct run *run)
     run->error = error_left(&report);
     run->evaluations = report.force_evaluations;
     run_folds_check(run, run->u, report.load, true);
-    run_stability_check(run, report.load);
     judge(run, &report);
     judge_steps(run, &report);
     put_error(run);

@@ -265,8 +265,7 @@ void run_put_frame(void *context, int64_t number, double time, const double *u)
     run_put_field(run, &now, u);
     run_folds_check(run, u, time, true);
     if (run->scene->analysis == SCENE_QUASI_STATIC) {
-        run_stability_check(run, time);
-        run_stability_elliptic(run, time, false);
+        run_stability_check(run, time, false);
         run_contacts_penetrate(run, field_largest(run->model->system.node_count, run->scene->dim, u), 0.0,
                                false);
         put_state(run, &now);
