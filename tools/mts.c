@@ -119,7 +119,7 @@ static int print_cells(const struct tool *tool, const struct stream *stream)
     FREED_BY(groups_free) struct groups facets = {0};
     bool parts;
     char hanging[512];
-    if (stream_facets(stream, false, &facets, &error) != STATUS_OK) {
+    if (stream_groups(stream, GROUP_FACETS, false, &facets, &error) != STATUS_OK) {
         facets.count = 0; /* reported, too */
     }
     tool_check(tool, cell_report_hanging(&cells, facets.count, facets.node, &parts, hanging, &error), &error);

@@ -56,7 +56,7 @@ static enum status recover(const struct stream *stream, const char *field, struc
     FREED_BY(groups_free) struct groups regions = {0};
     RETURN_IF_ERROR(stream_cells(stream, true, cells, error));
     RETURN_IF_ERROR(stream_field(stream, field, 0, cells->node_count, &section, error));
-    RETURN_IF_ERROR(stream_regions(stream, false, &regions, error));
+    RETURN_IF_ERROR(stream_groups(stream, GROUP_REGION, false, &regions, error));
     RETURN_IF_ERROR(NEW_ARRAY(squared, cells->count, error));
     return fail_in(error,
                    field_error_recovered(cells, regions.group, (int32_t)regions.names.count, section->cols,

@@ -65,14 +65,14 @@ static int64_t run_end(int64_t count, const int32_t *group, int64_t first)
 /* ---- MSH ---- */
 
 /* Groups of one dimension: a physical group and an entity for each name, with the same tag, from 1. */
-struct group_kind {
+struct mesh_part {
     int dim, type, corners; /* type: gmsh's number of the element */
     int64_t count;          /* elements */
     const int32_t *element, *group;
     const struct names *names;
 };
 
-static void print_names(FILE *file, const struct group_kind kind[3])
+static void print_names(FILE *file, const struct mesh_part kind[3])
 {
     int64_t count = 0;
     for (int k = 0; k < 3; k++) {
@@ -88,7 +88,7 @@ static void print_names(FILE *file, const struct group_kind kind[3])
 }
 
 /* Those of the lowest dimension come first. Their boxes, which readers do not use, are zeros. */
-static void print_entities(FILE *file, const struct group_kind kind[3])
+static void print_entities(FILE *file, const struct mesh_part kind[3])
 {
     int64_t count[4] = {0};
     for (int k = 0; k < 3; k++) {
@@ -104,7 +104,7 @@ static void print_entities(FILE *file, const struct group_kind kind[3])
     fprintf(file, "$EndEntities\n");
 }
 
-static void print_elements(FILE *file, const struct group_kind kind[3])
+static void print_elements(FILE *file, const struct mesh_part kind[3])
 {
     int64_t blocks = 0, elements = 0, tag = 0;
     for (int k = 0; k < 3; k++) {
@@ -137,11 +137,11 @@ static void write_msh(FILE *file, const struct body *body, double unit)
     const struct groups *sets = &body->sets;
     int dim = cells->dim;
     int64_t nodes = cells->node_count;
-    const struct group_kind kind[3] = {{dim, dim == 3 ? 4 : 2, dim + 1, cells->count, cells->node,
-                                        body->regions.group, &body->regions.names},
-                                       {dim - 1, dim == 3 ? 2 : 1, dim, body->facets.count, body->facets.node,
-                                        body->facets.group, &body->facets.names},
-                                       {0, 15, 1, sets->count, sets->node, sets->group, &sets->names}};
+    const struct mesh_part kind[3] = {{dim, dim == 3 ? 4 : 2, dim + 1, cells->count, cells->node,
+                                       body->regions.group, &body->regions.names},
+                                      {dim - 1, dim == 3 ? 2 : 1, dim, body->facets.count, body->facets.node,
+                                       body->facets.group, &body->facets.names},
+                                      {0, 15, 1, sets->count, sets->node, sets->group, &sets->names}};
     fprintf(file, "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n");
     print_names(file, kind);
     print_entities(file, kind);
@@ -210,22 +210,24 @@ static enum status print_surfaces(FILE *file, const struct cells *cells, const s
 /* Print the body as a deck of Abaqus and CalculiX; lists eight to a line. */
 static enum status write_inp(FILE *file, const struct body *body, double unit, struct error *error)
 {
-    const struct neighbours *sets = &body->sets.lists;
+    const struct groups *sets = &body->sets;
     fprintf(file, "*NODE\n");
     for (int64_t n = 0; n < body->cells.node_count; n++) {
         fprintf(file, "%" PRId64 ", ", n + 1);
         print_place(file, &body->cells, n, unit, ", ");
     }
     print_cells(file, &body->cells, &body->regions);
-    for (int32_t g = 0; g < sets->count; g++) {
-        int64_t first = sets->ptr[g], count = sets->ptr[g + 1] - first;
-        fprintf(file, "*NSET, NSET=%s\n", body->sets.names.name[g]);
-        for (int64_t i = 0; i < count; i++) {
-            fprintf(file, "%d%s", sets->idx[first + i] + 1,
-                    i + 1 == count ? "\n"
-                    : i % 8 == 7   ? ",\n"
-                                   : ", ");
+    for (int64_t g = 0, first = 0; g < sets->names.count; g++) {
+        fprintf(file, "*NSET, NSET=%s\n", sets->names.name[g]);
+        int64_t end =
+            first < sets->count && sets->group[first] == g ? run_end(sets->count, sets->group, first) : first;
+        for (int64_t i = first; i < end; i++) {
+            fprintf(file, "%d%s", sets->node[i] + 1,
+                    i + 1 == end           ? "\n"
+                    : (i - first) % 8 == 7 ? ",\n"
+                                           : ", ");
         }
+        first = end;
     }
     return print_surfaces(file, &body->cells, &body->facets, error);
 }
@@ -244,9 +246,9 @@ int main(int argc, char *argv[])
     double unit = tool_length_unit(&tool, "unit", 1.0);
     tool_read(&tool, tool.operands[0], &stream);
     TOOL_TRY(&tool, stream_cells(&stream, true, &body.cells, &error));
-    TOOL_TRY(&tool, stream_regions(&stream, true, &body.regions, &error));
-    TOOL_TRY(&tool, stream_facets(&stream, false, &body.facets, &error));
-    TOOL_TRY(&tool, stream_sets(&stream, false, &body.sets, &error));
+    TOOL_TRY(&tool, stream_groups(&stream, GROUP_REGION, true, &body.regions, &error));
+    TOOL_TRY(&tool, stream_groups(&stream, GROUP_FACETS, false, &body.facets, &error));
+    TOOL_TRY(&tool, stream_groups(&stream, GROUP_NODES, false, &body.sets, &error));
     tool_print_to(&tool, &output, tool.output);
     if (is_msh) {
         write_msh(output.file, &body, unit);

@@ -48,10 +48,12 @@ static enum status check_lists(const struct stream *stream, const char *ptr_name
 
 static enum status check_groups(const struct stream *stream, struct error *error)
 {
-    FREED_BY(groups_free) struct groups regions = {0}, facets = {0}, sets = {0};
-    RETURN_IF_ERROR(stream_regions(stream, false, &regions, error));
-    RETURN_IF_ERROR(stream_facets(stream, false, &facets, error));
-    return stream_sets(stream, false, &sets, error);
+    static const enum group_kind kinds[GROUP_KINDS] = {GROUP_REGION, GROUP_FACETS, GROUP_NODES};
+    for (int k = 0; k < GROUP_KINDS; k++) {
+        FREED_BY(groups_free) struct groups groups = {0};
+        RETURN_IF_ERROR(stream_groups(stream, kinds[k], false, &groups, error));
+    }
+    return STATUS_OK;
 }
 
 /* Check the faces, and the sections with a row for each of their rows or points. */

@@ -32,16 +32,13 @@ static enum status read_body(const struct stream *stream, struct cut_body *whole
     const struct incise_options *options = whole->options;
     struct cells *cells = &whole->cells;
     RETURN_IF_ERROR(stream_cells(stream, true, cells, error));
-    RETURN_IF_ERROR(stream_facets(stream, false, &whole->facets, error));
-    RETURN_IF_ERROR(stream_regions(stream, false, &whole->regions, error));
-    RETURN_IF_ERROR(stream_sets(stream, false, &whole->sets, error));
+    RETURN_IF_ERROR(stream_groups(stream, GROUP_FACETS, false, &whole->facets, error));
+    RETURN_IF_ERROR(stream_groups(stream, GROUP_REGION, false, &whole->regions, error));
+    RETURN_IF_ERROR(stream_groups(stream, GROUP_NODES, false, &whole->sets, error));
     RETURN_IF_ERROR(division_begin(cells, options->at, whole->regions.group, whole->facets.count,
                                    whole->facets.node, whole->facets.group, &whole->body, error));
-    for (int64_t s = 0; s < whole->sets.names.count; s++) {
-        const struct neighbours *lists = &whole->sets.lists;
-        for (int64_t i = lists->ptr[s]; i < lists->ptr[s + 1]; i++) {
-            whole->body.sets[lists->idx[i]] |= (uint64_t)1 << s % 64;
-        }
+    for (int64_t i = 0; i < whole->sets.count; i++) {
+        whole->body.sets[whole->sets.node[i]] |= (uint64_t)1 << whole->sets.group[i] % 64;
     }
     whole->old_groups = whole->facets.names.count;
     whole->front = whole->back = whole->wall = -1;

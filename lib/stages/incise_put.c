@@ -30,10 +30,10 @@ static enum status put(struct stream *stream, const char *name, enum element_typ
 static void mark_members(const struct cut_body *whole, int64_t set, bool *in)
 {
     const struct division *body = &whole->body;
-    const struct neighbours *lists = &whole->sets.lists;
+    const struct groups *sets = &whole->sets;
     memset(in, false, (size_t)body->node_count * sizeof *in);
-    for (int64_t i = lists->ptr[set]; i < lists->ptr[set + 1]; i++) {
-        in[lists->idx[i]] = true;
+    for (int64_t i = 0; i < sets->count; i++) {
+        in[sets->node[i]] |= sets->group[i] == set;
     }
     for (int64_t n = whole->cells.node_count; n < body->node_count; n++) {
         in[n] = in[body->parent[2 * n]] && in[body->parent[2 * n + 1]];
@@ -93,11 +93,11 @@ static enum status put_sets(struct cut_body *whole, const bool *edge, const int3
                             int64_t node_count, struct stream *stream, struct error *error)
 {
     struct names *names = &whole->sets.names;
-    int64_t own = find_edge(whole), room = 0, count = 0, lists = 0;
-    SCRATCH int32_t *idx = NULL;
+    int64_t own = find_edge(whole), node_room = 0, group_room = 0, count = 0;
+    int32_t sets = 0;
+    SCRATCH int32_t *node = NULL, *group = NULL;
     bool any = whole->report->edge > 0;
     NEW_SCRATCH(bool, in, node_count, error);
-    NEW_SCRATCH(int64_t, ptr, names->count + 2, error);
     for (int64_t s = 0; s < names->count + any; s++) {
         if (s == own) {
             continue;
@@ -107,27 +107,21 @@ static enum status put_sets(struct cut_body *whole, const bool *edge, const int3
         }
         for (int64_t n = 0; n < node_count; n++) {
             if (kept_as[n] >= 0 && (s < names->count ? in[n] : edge[n])) {
-                RETURN_IF_ERROR(GROW_ARRAY(&idx, count + 1, &room, error));
-                idx[count++] = kept_as[n];
+                RETURN_IF_ERROR(GROW_ARRAY(&node, count + 1, &node_room, error));
+                RETURN_IF_ERROR(GROW_ARRAY(&group, count + 1, &group_room, error));
+                node[count] = kept_as[n];
+                group[count++] = sets;
             }
         }
-        ptr[++lists] = count;
+        sets++;
     }
-    if (lists == 0) {
-        stream_remove(stream, "sets.ptr");
-        stream_remove(stream, "sets.idx");
-        return STATUS_OK;
-    }
-    RETURN_IF_ERROR(RESIZE_ARRAY(&idx, count > 0 ? count : 1, error));
     if (own >= 0) {
         RETURN_IF_ERROR(names_change(names, own, NULL, error));
     }
     if (any) {
         RETURN_IF_ERROR(names_print(names, error, "%s|edge", whole->options->name));
     }
-    RETURN_IF_ERROR(
-        stream_put_named(stream, "sets.ptr", TYPE_I8, lists + 1, names, array_take(&ptr), true, error));
-    return stream_put(stream, "sets.idx", TYPE_I4, count, 1, "", array_take(&idx), true, error);
+    return stream_put_groups(stream, GROUP_NODES, names, count, &node, &group, error);
 }
 
 /* ---- cells and facets ---- */
@@ -149,21 +143,7 @@ static enum status put_regions(struct cut_body *whole, struct stream *stream, st
     if (region >= 0) {
         RETURN_IF_ERROR(names_change(names, region, NULL, error));
     }
-    return stream_put_named(stream, "cells.region", TYPE_I4, body->cell_count, names, array_take(&of_cell),
-                            true, error);
-}
-
-static enum status put_facets(struct cut_body *whole, struct stream *stream, struct error *error)
-{
-    struct division *body = &whole->body;
-    if (body->facet_count == 0) {
-        stream_remove(stream, "facets");
-        stream_remove(stream, "facets.set");
-        return STATUS_OK;
-    }
-    RETURN_IF_ERROR(put(stream, "facets", TYPE_I4, body->facet_count, body->dim, &body->facet, error));
-    return stream_put_named(stream, "facets.set", TYPE_I4, body->facet_count, &whole->facets.names,
-                            array_take(&body->group), true, error);
+    return stream_put_groups(stream, GROUP_REGION, names, body->cell_count, NULL, &of_cell, error);
 }
 
 /* Drop the new groups without facets, as the wall of a region that bordered on no other. */
@@ -262,7 +242,8 @@ enum status cut_body_put(struct cut_body *whole, const bool *kept, struct stream
     RETURN_IF_ERROR(take_fibres(whole, stream, &fibre, error));
     RETURN_IF_ERROR(put_sets(whole, edge, kept_as, nodes, stream, error));
     RETURN_IF_ERROR(put_regions(whole, stream, error));
-    RETURN_IF_ERROR(put_facets(whole, stream, error));
+    RETURN_IF_ERROR(stream_put_groups(stream, GROUP_FACETS, &whole->facets.names, body->facet_count,
+                                      &body->facet, &body->group, error));
     RETURN_IF_ERROR(put(stream, "cells", TYPE_I4, body->cell_count, body->dim + 1, &body->node, error));
     RETURN_IF_ERROR(put(stream, "nodes.x", TYPE_F8, body->node_count, body->dim, &body->x, error));
     sections_remove(stream, MADE_WITH_POINTS, MADE_WITH_RESULTS);

@@ -192,7 +192,7 @@ enum status stage_interfaces(const struct stream *stream, const char *names, int
     if (names == NULL && stream_find(stream, "cells.region") == NULL) {
         return STATUS_OK;
     }
-    RETURN_IF_ERROR(stream_regions(stream, true, &regions, error));
+    RETURN_IF_ERROR(stream_groups(stream, GROUP_REGION, true, &regions, error));
     if (names == NULL && regions.names.count < 2) {
         return STATUS_OK;
     }

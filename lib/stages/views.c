@@ -159,58 +159,76 @@ enum status names_of(const struct section *section, const char *key, struct name
     return section_attribute(section, key, list, size) ? names_split(names, list, error) : STATUS_OK;
 }
 
-enum status stream_regions(const struct stream *stream, bool needed, struct groups *regions,
-                           struct error *error)
+/* The nodes of all sets, and the set of each. */
+static enum status view_sets(const struct stream *stream, struct groups *sets, struct error *error)
 {
-    const struct section *section;
-    *regions = (struct groups){0};
-    if (!needed && stream_find(stream, "cells.region") == NULL) {
-        return STATUS_OK;
-    }
-    RETURN_IF_ERROR(stream_view(stream, "cells.region", &section, error));
-    RETURN_IF_ERROR(names_of(section, "names", &regions->names, error));
-    regions->group = section->data;
-    return section_check_indices(section, 0, regions->names.count, "region", " in names=", error);
-}
-
-enum status stream_facets(const struct stream *stream, bool needed, struct groups *facets,
-                          struct error *error)
-{
-    const struct section *facet, *group;
-    *facets = (struct groups){0};
-    if (!needed && stream_find(stream, "facets") == NULL) {
-        return STATUS_OK;
-    }
-    RETURN_IF_ERROR(stream_view(stream, "facets", &facet, error));
-    RETURN_IF_ERROR(stream_view(stream, "facets.set", &group, error));
-    RETURN_IF_ERROR(names_of(group, "names", &facets->names, error));
-    RETURN_IF_ERROR(section_check_indices(group, 0, facets->names.count, "group", " in names=", error));
-    facets->count = facet->rows;
-    facets->node = facet->data;
-    facets->group = group->data;
-    return STATUS_OK;
-}
-
-enum status stream_sets(const struct stream *stream, bool needed, struct groups *sets, struct error *error)
-{
-    const struct section *ptr;
-    *sets = (struct groups){0};
-    if (!needed && stream_find(stream, "sets.ptr") == NULL) {
-        return STATUS_OK;
-    }
-    RETURN_IF_ERROR(stream_view(stream, "sets.ptr", &ptr, error));
-    RETURN_IF_ERROR(names_of(ptr, "names", &sets->names, error));
-    RETURN_IF_ERROR(stream_neighbours(stream, "sets", sets->names.count, &sets->lists, error));
-    sets->count = sets->lists.ptr[sets->lists.count];
+    struct neighbours lists;
+    RETURN_IF_ERROR(stream_neighbours(stream, "sets", sets->names.count, &lists, error));
+    sets->count = lists.ptr[lists.count];
     RETURN_IF_ERROR(NEW_ARRAY(&sets->owned, sets->count, error));
-    for (int32_t s = 0; s < sets->lists.count; s++) {
-        for (int64_t i = sets->lists.ptr[s]; i < sets->lists.ptr[s + 1]; i++) {
+    for (int32_t s = 0; s < lists.count; s++) {
+        for (int64_t i = lists.ptr[s]; i < lists.ptr[s + 1]; i++) {
             sets->owned[i] = s;
         }
     }
-    sets->node = sets->lists.idx;
+    sets->node = lists.idx;
     sets->group = sets->owned;
     return STATUS_OK;
+}
+
+/* The sections that tell the groups of items, with their names. */
+static const char *const group_sections[GROUP_KINDS] = {"facets.set", "sets.ptr", "cells.region"};
+
+enum status stream_groups(const struct stream *stream, enum group_kind kind, bool needed,
+                          struct groups *groups, struct error *error)
+{
+    const struct section *section, *facets;
+    *groups = (struct groups){0};
+    if (!needed && stream_find(stream, kind == GROUP_FACETS ? "facets" : group_sections[kind]) == NULL) {
+        return STATUS_OK;
+    }
+    if (kind == GROUP_FACETS) {
+        RETURN_IF_ERROR(stream_view(stream, "facets", &facets, error));
+        groups->node = facets->data;
+    }
+    RETURN_IF_ERROR(stream_view(stream, group_sections[kind], &section, error));
+    RETURN_IF_ERROR(names_of(section, "names", &groups->names, error));
+    if (kind == GROUP_NODES) {
+        return view_sets(stream, groups, error);
+    }
+    groups->count = section->rows;
+    groups->group = section->data;
+    return section_check_indices(section, 0, groups->names.count, kind == GROUP_FACETS ? "group" : "region",
+                                 " in names=", error);
+}
+
+enum status stream_put_groups(struct stream *stream, enum group_kind kind, const struct names *names,
+                              int64_t count, int32_t **node, int32_t **group, struct error *error)
+{
+    const char *section = group_sections[kind], *items = kind == GROUP_FACETS ? "facets" : "sets.idx";
+    if (kind == GROUP_REGION) {
+        return stream_put_named(stream, section, TYPE_I4, count, names, array_take(group), true, error);
+    }
+    if (names->count == 0 || (kind == GROUP_FACETS && count == 0)) {
+        stream_remove(stream, section);
+        stream_remove(stream, items);
+        return STATUS_OK;
+    }
+    if (kind == GROUP_FACETS) {
+        RETURN_IF_ERROR(stream_put(stream, items, TYPE_I4, count, find_dimension(stream), "",
+                                   array_take(node), true, error));
+        return stream_put_named(stream, section, TYPE_I4, count, names, array_take(group), true, error);
+    }
+    NEW_SCRATCH(int64_t, ptr, names->count + 1, error);
+    for (int64_t i = 0; i < count; i++) {
+        ptr[(*group)[i] + 1] = i + 1;
+    }
+    for (int64_t g = 0; g < names->count; g++) {
+        ptr[g + 1] = ptr[g + 1] > ptr[g] ? ptr[g + 1] : ptr[g];
+    }
+    RETURN_IF_ERROR(
+        stream_put_named(stream, section, TYPE_I8, names->count + 1, names, array_take(&ptr), true, error));
+    return stream_put(stream, items, TYPE_I4, count, 1, "", array_take(node), true, error);
 }
 
 /* The edges of faces, in 3D of smoothed cells only and in the order of their first use. */

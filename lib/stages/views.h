@@ -39,22 +39,26 @@ MUST_CHECK enum status stream_field(const struct stream *stream, const char *nam
  * commas; to be freed also on failure. */
 MUST_CHECK enum status names_of(const struct section *section, const char *key, struct names *names,
                                 struct error *error);
-/* Named groups: the regions of the cells, groups of facets of the boundary, or sets of nodes. To be freed,
- * also where reading them failed. Without groups all is 0, or it is an error if they are needed. */
+
+/* Named groups: of facets of the boundary, sets of nodes, or the regions of the cells. To be freed, also
+ * where reading them failed. Without groups all is 0, or it is an error if they are needed. */
+enum group_kind { GROUP_FACETS, GROUP_NODES, GROUP_REGION, GROUP_KINDS };
 struct groups {
     struct names names;
-    int64_t count;        /* facets; sets: nodes of all of them */
-    const int32_t *node;  /* count * dim: of the facets; count: nodes of the sets, one set after the other */
-    const int32_t *group; /* of each cell, facet or node of a set: below names.count */
-    struct neighbours lists; /* sets: an ascending list of nodes for each name */
-    int32_t *owned;          /* sets: the array of `group` */
+    int64_t count;        /* facets, cells, or nodes of all sets */
+    const int32_t *node;  /* count * dim: of the facets; count: nodes of one set after the other, ascending in
+                             each; NULL: cells */
+    const int32_t *group; /* count: below names.count */
+    int32_t *owned;       /* sets: the array of `group` */
 };
-MUST_CHECK enum status stream_regions(const struct stream *stream, bool needed, struct groups *regions,
-                                      struct error *error);
-MUST_CHECK enum status stream_facets(const struct stream *stream, bool needed, struct groups *facets,
-                                     struct error *error);
-MUST_CHECK enum status stream_sets(const struct stream *stream, bool needed, struct groups *sets,
-                                   struct error *error);
+MUST_CHECK enum status stream_groups(const struct stream *stream, enum group_kind kind, bool needed,
+                                     struct groups *groups, struct error *error);
+
+/* Put groups, as above, in place of those that there are; without names, or without facets, remove these. The
+ * stream takes the arrays *node and *group. */
+MUST_CHECK enum status stream_put_groups(struct stream *stream, enum group_kind kind,
+                                         const struct names *names, int64_t count, int32_t **node,
+                                         int32_t **group, struct error *error);
 void groups_free(struct groups *groups);
 
 /* Faces of the cells; those on the boundary come first. The view is not to be freed. */

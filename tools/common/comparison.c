@@ -75,7 +75,7 @@ static enum status find_members(const struct side *a, struct findings *findings,
     if (stream_find(&a->stream, "cells.region") == NULL || cells->count == 0) {
         return STATUS_OK;
     }
-    RETURN_IF_ERROR(stream_regions(&a->stream, true, &findings->regions, error));
+    RETURN_IF_ERROR(stream_groups(&a->stream, GROUP_REGION, true, &findings->regions, error));
     int64_t count = findings->regions.names.count;
     RETURN_IF_ERROR(NEW_ARRAY(&findings->member, cells->node_count * count, error));
     for (int64_t i = 0; i < cells->count * corners; i++) {

@@ -2,15 +2,28 @@
 
 #include <string.h>
 
-/* wanted[present->count]: whether each group is among the names; `what` are groups in messages. */
-static enum status choose(const struct scene_label *label, const struct name_list *names, const char *what,
-                          const struct names *present, bool *wanted, struct error *error)
+/* The facet groups or node sets of the stream, and (*wanted)[groups->names.count], to be freed: whether each
+ * is among the names. */
+static enum status choose(const struct model *model, const struct scene_label *label,
+                          const struct name_list *names, enum group_kind kind, struct groups *groups,
+                          bool **wanted, struct error *error)
 {
+    bool facets = kind == GROUP_FACETS;
+    RETURN_IF_ERROR(stream_groups(model->stream, kind, false, groups, error));
+    if (groups->names.count == 0) {
+        return fail(error, STATUS_INPUT,
+                    facets ? "%s: no named facets: give the mesh physical groups, or run tag"
+                           : "%s: no node sets: run tag -n",
+                    label->where);
+    }
+    RETURN_IF_ERROR(NEW_ARRAY(wanted, groups->names.count, error));
     for (int64_t i = 0; i < names->count; i++) {
         int64_t group;
-        RETURN_IF_ERROR(
-            fail_in(error, names_need(present, what, names->names[i], &group, error), "%s", label->where));
-        wanted[group] = true;
+        RETURN_IF_ERROR(fail_in(
+            error,
+            names_need(&groups->names, facets ? "facet group" : "node set", names->names[i], &group, error),
+            "%s", label->where));
+        (*wanted)[group] = true;
     }
     return STATUS_OK;
 }
@@ -25,6 +38,7 @@ enum status model_facets(struct model *model, const struct scene_label *label, c
 {
     const struct faces *boundary = &model->assembly.boundary;
     FREED_BY(groups_free) struct groups facets = {0};
+    SCRATCH bool *wanted = NULL;
     int32_t *chosen;
     int dim = model->assembly.cells.dim;
     *set = (struct facet_set){0};
@@ -37,13 +51,7 @@ enum status model_facets(struct model *model, const struct scene_label *label, c
             return fail(error, STATUS_INPUT, "%s: *, the whole boundary, stands alone", label->where);
         }
     }
-    if (stream_find(model->stream, "facets") == NULL || stream_find(model->stream, "facets.set") == NULL) {
-        return fail(error, STATUS_INPUT, "%s: no named facets: give the mesh physical groups, or run tag",
-                    label->where);
-    }
-    RETURN_IF_ERROR(stream_facets(model->stream, true, &facets, error));
-    NEW_SCRATCH(bool, wanted, facets.names.count, error);
-    RETURN_IF_ERROR(choose(label, names, "facet group", &facets.names, wanted, error));
+    RETURN_IF_ERROR(choose(model, label, names, GROUP_FACETS, &facets, &wanted, error));
     RETURN_IF_ERROR(MODEL_ARRAY(model, &chosen, facets.count * dim, error));
     NEW_SCRATCH(int64_t, face, facets.count, error);
     RETURN_IF_ERROR(faces_find(boundary, facets.count, facets.node, face, error));
@@ -68,20 +76,14 @@ enum status model_nodes(struct model *model, const struct scene_label *label, co
                         const int32_t **nodes, int64_t *count, struct error *error)
 {
     FREED_BY(groups_free) struct groups sets = {0};
+    SCRATCH bool *wanted = NULL;
     int32_t *chosen;
     int64_t node_count = model->assembly.cells.node_count;
     *count = 0;
-    if (stream_find(model->stream, "sets.ptr") == NULL) {
-        return fail(error, STATUS_INPUT, "%s: no node sets: run tag -n", label->where);
-    }
-    RETURN_IF_ERROR(stream_sets(model->stream, true, &sets, error));
-    NEW_SCRATCH(bool, wanted, sets.names.count, error);
-    RETURN_IF_ERROR(choose(label, names, "node set", &sets.names, wanted, error));
+    RETURN_IF_ERROR(choose(model, label, names, GROUP_NODES, &sets, &wanted, error));
     NEW_SCRATCH(bool, member, node_count, error);
-    for (int64_t set = 0; set < sets.lists.count; set++) {
-        for (int64_t k = sets.lists.ptr[set]; k < sets.lists.ptr[set + 1] && wanted[set]; k++) {
-            member[sets.lists.idx[k]] = true;
-        }
+    for (int64_t i = 0; i < sets.count; i++) {
+        member[sets.node[i]] |= wanted[sets.group[i]];
     }
     RETURN_IF_ERROR(MODEL_ARRAY(model, &chosen, node_count, error));
     *nodes = chosen;

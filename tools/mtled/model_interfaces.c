@@ -165,7 +165,7 @@ enum status model_interfaces(struct model *model, struct stream *stream, bool *r
         RETURN_IF_ERROR(faces_build(&input->cells, false, &built, error));
     }
     const struct faces *faces = input->smoothed ? &input->faces : &built;
-    RETURN_IF_ERROR(stream_regions(stream, true, &regions, error));
+    RETURN_IF_ERROR(stream_groups(stream, GROUP_REGION, true, &regions, error));
     RETURN_IF_ERROR(stage_recorded(stream, "support", &recorded, error));
     read_moduli(input, of);
     const int32_t *side = input->cell_side;

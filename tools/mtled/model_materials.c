@@ -88,7 +88,7 @@ static enum status materials_of_cells(struct model *model, struct error *error)
 {
     const struct cells *cells = &model->assembly.cells;
     FREED_BY(groups_free) struct groups regions = {0};
-    RETURN_IF_ERROR(stream_regions(model->stream, true, &regions, error));
+    RETURN_IF_ERROR(stream_groups(model->stream, GROUP_REGION, true, &regions, error));
     NEW_SCRATCH(int32_t, material, regions.names.count, error);
     RETURN_IF_ERROR(NEW_ARRAY(&model->assembly.materials.of_cell, cells->count, error));
     RETURN_IF_ERROR(materials_of_regions(model->scene, &regions.names, material, error));

@@ -28,7 +28,7 @@ static void name_facet(const struct run *run, int64_t f, char *name, size_t size
     FREED_BY(groups_free) struct groups facets = {0};
     struct error ignored;
     int32_t key[3], other[3];
-    enum status status = stream_facets(run->stream, false, &facets, &ignored);
+    enum status status = stream_groups(run->stream, GROUP_FACETS, false, &facets, &ignored);
     snprintf(name, size, "the boundary");
     face_key(dim, run->folds.folds.input.facet + f * dim, key);
     for (int64_t i = 0; i < facets.count && status == STATUS_OK; i++) {

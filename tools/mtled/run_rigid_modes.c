@@ -129,7 +129,7 @@ static struct told tell(const struct run *run, const struct bodies *bodies, int6
     struct told told = {.body = "the body"};
     modes_text(input->cells.dim, input->extent, &bodies->modes[b], told.what, sizeof told.what);
     if (bodies->count > 1) {
-        TOOL_TRY(run->tool, stream_regions(run->stream, true, &regions, &error));
+        TOOL_TRY(run->tool, stream_groups(run->stream, GROUP_REGION, true, &regions, &error));
         snprintf(told.body, sizeof told.body, "body %lld (region %s, near %s)", (long long)b + 1,
                  regions.names.name[regions.group[bodies->cell[b]]],
                  POINT_TEXT(input->cells.dim, bodies->modes[b].centre));

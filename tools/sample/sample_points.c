@@ -28,7 +28,7 @@ static void choose_regions(const struct tool *tool, const struct stream *stream,
     const struct section *cell;
     int64_t kept = 0;
     TOOL_TRY(tool, stream_view(stream, "points.cell", &cell, &error));
-    TOOL_TRY(tool, stream_regions(stream, true, &regions, &error));
+    TOOL_TRY(tool, stream_groups(stream, GROUP_REGION, true, &regions, &error));
     TOOL_TRY(tool, section_check_indices(cell, 0, stream_find(stream, "cells.region")->rows, "cell",
                                          " of a region", &error));
     TOOL_TRY(tool, names_split(&given, list, &error));

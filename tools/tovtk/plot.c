@@ -157,9 +157,9 @@ static enum status derived_add(struct stream *stream, const struct cells *cells,
 {
     FREED_BY(groups_free) struct groups facets = {0}, sets = {0};
     RETURN_IF_ERROR(add_invariants(stream, frame, error));
-    RETURN_IF_ERROR(stream_facets(stream, false, &facets, error));
+    RETURN_IF_ERROR(stream_groups(stream, GROUP_FACETS, false, &facets, error));
     RETURN_IF_ERROR(add_groups(stream, "facets", &facets, cells->node_count, cells->dim, error));
-    RETURN_IF_ERROR(stream_sets(stream, false, &sets, error));
+    RETURN_IF_ERROR(stream_groups(stream, GROUP_NODES, false, &sets, error));
     return add_groups(stream, "set", &sets, cells->node_count, 1, error);
 }
 
@@ -282,7 +282,8 @@ static enum status find_mesh(struct plot *plot, struct error *error)
                                    .x = cells->x,
                                    .cell_count = cells->count,
                                    .node = cells->count > 0 ? cells->node : NULL};
-    RETURN_IF_ERROR(cells->count > 0 ? stream_regions(&plot->stream, false, regions, error) : STATUS_OK);
+    RETURN_IF_ERROR(cells->count > 0 ? stream_groups(&plot->stream, GROUP_REGION, false, regions, error)
+                                     : STATUS_OK);
     plot->mesh.regions = regions->names;
     return STATUS_OK;
 }

@@ -1,7 +1,5 @@
 #include "groups/group_body.h"
 
-#include "stages/views.h"
-
 #include "base/box.h"
 #include "base/lists.h"
 #include "base/memory.h"
@@ -10,18 +8,6 @@
 #include <string.h>
 
 const char *const group_kind_names[GROUP_KINDS] = {"facets", "nodes", "region"};
-
-/* Set all members of a list; item NULL: 0, 1, ... */
-static enum status set_members(struct group_list *list, int64_t count, const int32_t *group,
-                               const int32_t *item, struct error *error)
-{
-    RETURN_IF_ERROR(NEW_ARRAY(&list->member, count, error));
-    for (int64_t i = 0; i < count; i++) {
-        list->member[i] = (struct group_member){group[i], item != NULL ? item[i] : (int32_t)i};
-    }
-    list->count = list->room = count;
-    return STATUS_OK;
-}
 
 /* ---- reading ---- */
 
@@ -45,39 +31,25 @@ static enum status find_facets(struct group_body *body, const struct groups *nam
     return STATUS_OK;
 }
 
-static enum status read_facets(const struct stream *stream, struct group_body *body, struct error *error)
+static enum status read_groups(const struct stream *stream, enum group_kind kind, struct group_body *body,
+                               struct error *error)
 {
-    FREED_BY(groups_free) struct groups named = {0};
-    struct group_list *list = &body->groups[GROUP_FACETS];
-    RETURN_IF_ERROR(stream_facets(stream, false, &named, error));
-    NEW_SCRATCH(int32_t, facet, named.count, error);
-    RETURN_IF_ERROR(find_facets(body, &named, facet, error));
-    list->names = named.names;
-    named.names = (struct names){0};
-    return set_members(list, named.count, named.group, facet, error);
-}
-
-static enum status read_sets(const struct stream *stream, struct group_body *body, struct error *error)
-{
-    struct group_list *list = &body->groups[GROUP_NODES];
-    FREED_BY(groups_free) struct groups sets = {0};
-    RETURN_IF_ERROR(stream_sets(stream, false, &sets, error));
-    list->names = sets.names;
-    sets.names = (struct names){0};
-    return set_members(list, sets.count, sets.group, sets.node, error);
-}
-
-static enum status read_regions(const struct stream *stream, struct group_body *body, struct error *error)
-{
-    FREED_BY(groups_free) struct groups regions = {0};
-    struct group_list *list = &body->groups[GROUP_REGION];
-    RETURN_IF_ERROR(stream_regions(stream, false, &regions, error));
-    if (regions.group == NULL) {
-        return STATUS_OK;
+    FREED_BY(groups_free) struct groups groups = {0};
+    struct group_list *list = &body->groups[kind];
+    RETURN_IF_ERROR(stream_groups(stream, kind, false, &groups, error));
+    NEW_SCRATCH(int32_t, facet, groups.count, error);
+    if (kind == GROUP_FACETS) {
+        RETURN_IF_ERROR(find_facets(body, &groups, facet, error));
     }
-    list->names = regions.names;
-    regions.names = (struct names){0};
-    return set_members(list, body->cells.count, regions.group, NULL, error);
+    list->names = groups.names;
+    groups.names = (struct names){0};
+    RETURN_IF_ERROR(NEW_ARRAY(&list->member, groups.count, error));
+    for (int64_t i = 0; i < groups.count; i++) {
+        int32_t item = kind == GROUP_FACETS ? facet[i] : kind == GROUP_NODES ? groups.node[i] : (int32_t)i;
+        list->member[i] = (struct group_member){groups.group[i], item};
+    }
+    list->count = list->room = groups.count;
+    return STATUS_OK;
 }
 
 enum status group_body_read(const struct stream *stream, struct group_body *body, struct error *error)
@@ -94,10 +66,10 @@ enum status group_body_read(const struct stream *stream, struct group_body *body
     body->items[GROUP_NODES] = (struct items){cells->dim, cells->node_count, 1, body->node, cells->x};
     if (cells->count > 0) {
         RETURN_IF_ERROR(faces_build(cells, true, &body->boundary, error));
-        RETURN_IF_ERROR(read_facets(stream, body, error));
-        RETURN_IF_ERROR(read_regions(stream, body, error));
+        RETURN_IF_ERROR(read_groups(stream, GROUP_FACETS, body, error));
+        RETURN_IF_ERROR(read_groups(stream, GROUP_REGION, body, error));
     }
-    RETURN_IF_ERROR(read_sets(stream, body, error));
+    RETURN_IF_ERROR(read_groups(stream, GROUP_NODES, body, error));
     body->items[GROUP_FACETS] =
         (struct items){cells->dim, body->boundary.count, cells->dim, body->boundary.node, cells->x};
     body->items[GROUP_REGION] =
@@ -180,84 +152,44 @@ enum status group_remove(struct group_list *list, int64_t index, struct error *e
 
 /* ---- writing ---- */
 
-/* The items of each group: (*idx)[(*ptr)[g]] to before (*idx)[(*ptr)[g + 1]]. */
-static enum status list_items(const struct group_list *list, int64_t **ptr, int32_t **idx,
-                              struct error *error)
+/* Facets and nodes are written by groups, cells by their number. */
+static enum status write_groups(const struct group_body *body, enum group_kind kind, struct stream *stream,
+                                struct error *error)
 {
+    const struct group_list *list = &body->groups[kind];
+    const struct items *items = &body->items[kind];
+    int corners = items->corners;
+    SCRATCH int64_t *ptr = NULL;
+    SCRATCH int32_t *idx = NULL;
+    NEW_SCRATCH(int32_t, by, list->count, error);
+    NEW_SCRATCH(int32_t, node, list->count * corners, error);
     NEW_SCRATCH(int32_t, group, list->count, error);
-    for (int64_t i = 0; i < list->count; i++) {
-        group[i] = list->member[i].group;
-    }
-    RETURN_IF_ERROR(lists_by_row(list->count, 1, group, list->names.count, ptr, idx, error));
-    for (int64_t i = 0; i < list->count; i++) {
-        (*idx)[i] = list->member[(*idx)[i]].item;
-    }
-    return STATUS_OK;
-}
-
-static enum status write_facets(const struct group_body *body, struct stream *stream, struct error *error)
-{
-    const struct group_list *list = &body->groups[GROUP_FACETS];
-    int dim = body->boundary.dim;
-    SCRATCH int64_t *ptr = NULL;
-    SCRATCH int32_t *idx = NULL;
-    if (list->count == 0) {
-        stream_remove(stream, "facets");
-        stream_remove(stream, "facets.set");
-        return STATUS_OK;
-    }
-    RETURN_IF_ERROR(list_items(list, &ptr, &idx, error));
-    NEW_SCRATCH(int32_t, node, list->count * dim, error);
-    NEW_SCRATCH(int32_t, set, list->count, error);
-    for (int32_t g = 0; g < list->names.count; g++) {
-        for (int64_t i = ptr[g]; i < ptr[g + 1]; i++) {
-            memcpy(&node[i * dim], &body->boundary.node[(int64_t)idx[i] * dim], (size_t)dim * sizeof *node);
-            set[i] = g;
-        }
-    }
-    RETURN_IF_ERROR(
-        stream_put(stream, "facets", TYPE_I4, list->count, dim, "", array_take(&node), true, error));
-    return stream_put_named(stream, "facets.set", TYPE_I4, list->count, &list->names, array_take(&set), true,
-                            error);
-}
-
-static enum status write_sets(const struct group_body *body, struct stream *stream, struct error *error)
-{
-    const struct group_list *list = &body->groups[GROUP_NODES];
-    SCRATCH int64_t *ptr = NULL;
-    SCRATCH int32_t *idx = NULL;
-    if (list->names.count == 0) {
-        stream_remove(stream, "sets.ptr");
-        stream_remove(stream, "sets.idx");
-        return STATUS_OK;
-    }
-    RETURN_IF_ERROR(list_items(list, &ptr, &idx, error));
-    RETURN_IF_ERROR(stream_put_named(stream, "sets.ptr", TYPE_I8, list->names.count + 1, &list->names,
-                                     array_take(&ptr), true, error));
-    return stream_put(stream, "sets.idx", TYPE_I4, list->count, 1, "", array_take(&idx), true, error);
-}
-
-static enum status write_regions(const struct group_body *body, struct stream *stream, struct error *error)
-{
-    const struct group_list *list = &body->groups[GROUP_REGION];
-    if (list->count < body->cells.count) {
+    if (kind == GROUP_REGION && list->count < body->cells.count) {
         return fail(error, STATUS_INPUT,
                     "%jd of %jd cells belong to no region: give the rest a name, too (-r "
                     "'NAME=all without region:...')",
                     (body->cells.count - list->count), body->cells.count);
     }
-    NEW_SCRATCH(int32_t, region, body->cells.count, error);
     for (int64_t i = 0; i < list->count; i++) {
-        region[list->member[i].item] = list->member[i].group;
+        by[i] = kind == GROUP_REGION ? list->member[i].item : list->member[i].group;
     }
-    return stream_put_named(stream, "cells.region", TYPE_I4, body->cells.count, &list->names,
-                            array_take(&region), true, error);
+    int64_t rows = kind == GROUP_REGION ? body->cells.count : list->names.count;
+    RETURN_IF_ERROR(lists_by_row(list->count, 1, by, rows, &ptr, &idx, error));
+    for (int64_t i = 0; i < list->count; i++) {
+        const struct group_member *member = &list->member[idx[i]];
+        memcpy(node + i * corners, items->item + (int64_t)member->item * corners,
+               (size_t)corners * sizeof *node);
+        group[i] = member->group;
+    }
+    return stream_put_groups(stream, kind, &list->names, list->count, &node, &group, error);
 }
 
 enum status group_body_write(const struct group_body *body, struct stream *stream, struct error *error)
 {
-    const struct group_list *groups = body->groups;
-    RETURN_IF_ERROR(groups[GROUP_FACETS].changed ? write_facets(body, stream, error) : STATUS_OK);
-    RETURN_IF_ERROR(groups[GROUP_NODES].changed ? write_sets(body, stream, error) : STATUS_OK);
-    return groups[GROUP_REGION].changed ? write_regions(body, stream, error) : STATUS_OK;
+    for (int kind = 0; kind < GROUP_KINDS; kind++) {
+        if (body->groups[kind].changed) {
+            RETURN_IF_ERROR(write_groups(body, (enum group_kind)kind, stream, error));
+        }
+    }
+    return STATUS_OK;
 }

@@ -4,10 +4,7 @@
 
 #include "approx/cells/cells.h"
 #include "approx/points/select.h"
-#include "base/names.h"
-#include "io/stream/stream.h"
-
-enum group_kind { GROUP_FACETS, GROUP_NODES, GROUP_REGION, GROUP_KINDS };
+#include "stages/views.h"
 
 /* "facets", "nodes", "region": as in expressions and messages. */
 extern const char *const group_kind_names[GROUP_KINDS];
