@@ -76,25 +76,19 @@ int ranks_owner(const struct ranks *ranks, const int64_t *first, int64_t item)
 enum status row_ranges_of(int64_t begin, int64_t end, const bool *wanted, struct row_ranges *ranges,
                           struct error *error)
 {
-    int64_t most = 0;
+    int64_t room = 0;
     *ranges = (struct row_ranges){0};
-    for (int pass = 0; pass < 2; pass++) {
-        ranges->count = 0;
-        for (int64_t r = begin; r < end;) {
-            int64_t last = r;
-            while (last < end && last - r < ROW_RANGE_MOST && (wanted == NULL || wanted[last])) {
-                last++;
-            }
-            if (last > r && pass == 1) {
-                ranges->items[ranges->count] = (struct row_range){r, last};
-            }
-            ranges->count += last > r;
-            r = last > r ? last : r + 1;
+    for (int64_t r = begin; r < end; r++) {
+        struct row_range *last = ranges->count > 0 ? &ranges->items[ranges->count - 1] : NULL;
+        if (wanted != NULL && !wanted[r]) {
+            continue;
         }
-        if (pass == 0) {
-            most = ranges->count;
-            RETURN_IF_ERROR(NEW_ARRAY(&ranges->items, most, error));
+        if (last != NULL && last->end == r && r - last->begin < ROW_RANGE_MOST) {
+            last->end++;
+            continue;
         }
+        RETURN_IF_ERROR(GROW_ARRAY(&ranges->items, ranges->count + 1, &room, error));
+        ranges->items[ranges->count++] = (struct row_range){r, r + 1};
     }
     return STATUS_OK;
 }
@@ -105,35 +99,10 @@ void row_ranges_free(struct row_ranges *ranges)
     *ranges = (struct row_ranges){0};
 }
 
-static enum status list_wanted(struct halo *halo, int64_t items, const bool *wanted,
-                               int (*owner)(const void *context, int64_t item), const void *context,
-                               struct error *error)
-{
-    int count = halo->ranks->count, rank = halo->ranks->rank;
-    RETURN_IF_ERROR(NEW_ARRAY(&halo->receive_first, count + 1, error));
-    NEW_SCRATCH(int64_t, next, count, error);
-    for (int64_t i = 0; i < items; i++) {
-        int from = wanted[i] ? owner(context, i) : rank;
-        halo->receive_first[from + 1] += from != rank;
-    }
-    for (int r = 0; r < count; r++) {
-        halo->receive_first[r + 1] += halo->receive_first[r];
-        next[r] = halo->receive_first[r];
-    }
-    RETURN_IF_ERROR(NEW_ARRAY(&halo->receive, halo->receive_first[count], error));
-    for (int64_t i = 0; i < items; i++) {
-        int from = wanted[i] ? owner(context, i) : rank;
-        if (from != rank) {
-            halo->receive[next[from]++] = i;
-        }
-    }
-    return STATUS_OK;
-}
-
 /* Exchange lists of any length: send[send_first[r]] to before send[send_first[r + 1]] goes to process r; what
  * it sends begins at (*receive)[(*receive_first)[r]]. */
-static enum status exchange_lists(const struct ranks *ranks, const int64_t *send, const int64_t *send_first,
-                                  int64_t **receive, int64_t **receive_first, struct error *error)
+static enum status exchange_lists(const struct ranks *ranks, const int32_t *send, const int64_t *send_first,
+                                  int32_t **receive, int64_t **receive_first, struct error *error)
 {
     int count = ranks->count;
     NEW_SCRATCH(int64_t, each, count, error);
@@ -161,7 +130,12 @@ enum status halo_build(const struct ranks *ranks, int64_t items, const bool *wan
     if (ranks == NULL) {
         return STATUS_OK;
     }
-    RETURN_IF_ERROR(list_wanted(halo, items, wanted, owner, context, error));
+    NEW_SCRATCH(int32_t, from, items, error);
+    for (int64_t i = 0; i < items; i++) {
+        int other = wanted[i] ? owner(context, i) : ranks->rank;
+        from[i] = other != ranks->rank ? other : -1;
+    }
+    RETURN_IF_ERROR(lists_by_row(items, 1, from, ranks->count, &halo->receive_first, &halo->receive, error));
     RETURN_IF_ERROR(
         exchange_lists(ranks, halo->receive, halo->receive_first, &halo->send, &halo->send_first, error));
     RETURN_IF_ERROR(NEW_ARRAY(&halo->sent, halo->send_first[ranks->count] * width, error));
@@ -182,10 +156,10 @@ void halo_exchange(const struct halo *halo, int width, double *x)
         return;
     }
     for (int64_t i = 0; i < halo->send_first[ranks->count]; i++) {
-        memcpy(halo->sent + i * width, x + halo->send[i] * width, size);
+        memcpy(halo->sent + i * width, x + (int64_t)halo->send[i] * width, size);
     }
     ranks->exchange(ranks, size, halo->sent, halo->send_first, halo->received, halo->receive_first);
     for (int64_t i = 0; i < halo->receive_first[ranks->count]; i++) {
-        memcpy(x + halo->receive[i] * width, halo->received + i * width, size);
+        memcpy(x + (int64_t)halo->receive[i] * width, halo->received + i * width, size);
     }
 }

@@ -65,7 +65,7 @@ void row_ranges_free(struct row_ranges *ranges);
 struct halo {
     const struct ranks *ranks;
     int64_t *send_first, *receive_first; /* count + 1 */
-    int64_t *send, *receive;             /* the items */
+    int32_t *send, *receive;             /* the items */
     double *sent, *received;             /* scratch */
 };
 
