@@ -37,11 +37,10 @@ enum status model_between(struct model *model, const struct scene_contact *secti
         }
     }
     if (common > 0 && (common != lists[0].count || common != lists[1].count)) {
-        return fail(
-            error, STATUS_INPUT,
-            "%s: facets and against have %lld facets in common: name the same groups in both, of what "
-            "may touch itself, or groups without common facets",
-            section->label.where, (long long)common);
+        return fail(error, STATUS_INPUT,
+                    "%s: facets and against have %jd facets in common: name the same groups in both, of what "
+                    "may touch itself, or groups without common facets",
+                    section->label.where, common);
     }
     if (common > 0) {
         lists[1] = lists[0];

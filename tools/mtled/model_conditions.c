@@ -184,16 +184,15 @@ enum status model_initial(const struct model *model, double *u, double *v, struc
     FREED_BY(table_free) struct table table = {0};
     RETURN_IF_ERROR(table_read(initial->table, 3 * dim, 3 * dim, &table, error));
     if (table.rows != cells->node_count) {
-        return fail(error, STATUS_INPUT,
-                    "%s: [initial]: table %s: %lld rows for %lld nodes: give one for each",
-                    model->scene->path, initial->table, (long long)table.rows, (long long)cells->node_count);
+        return fail(error, STATUS_INPUT, "%s: [initial]: table %s: %jd rows for %jd nodes: give one for each",
+                    model->scene->path, initial->table, table.rows, cells->node_count);
     }
     for (int64_t n = 0; n < cells->node_count; n++) {
         const double *row = table.values + n * table.cols;
         if (!(model_away(model, row, initial->table_unit, cells->x + n * dim) <= MODEL_SAME_PLACE)) {
             return fail(error, STATUS_INPUT,
-                        "%s:%lld: not the place of node %lld: give the nodes in the order of the mesh",
-                        initial->table, (long long)table.line[n], (long long)n);
+                        "%s:%jd: not the place of node %jd: give the nodes in the order of the mesh",
+                        initial->table, table.line[n], n);
         }
         for (int a = 0; a < dim; a++) {
             u[n * dim + a] = row[dim + a] * initial->table_unit;

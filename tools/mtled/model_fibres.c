@@ -20,8 +20,8 @@ static enum status square_directions(const struct scene_material *section, const
         double *to = rows + r * (dim + count);
         memcpy(to, from, (size_t)dim * sizeof *to);
         if (!axis_square(dim, from + dim, to + dim)) {
-            return fail(error, STATUS_INPUT, "%s: fibres: %s:%lld: the direction has no length",
-                        section->label.where, section->fibres, (long long)table->line[r]);
+            return fail(error, STATUS_INPUT, "%s: fibres: %s:%jd: the direction has no length",
+                        section->label.where, section->fibres, table->line[r]);
         }
     }
     return STATUS_OK;
@@ -73,8 +73,8 @@ static enum status directions_at(const struct model *model, const struct source 
         memcpy(axis, source->axes + q * dim, (size_t)dim * sizeof *axis);
         if (!fibre_frame(dim, axis, NULL, frame)) {
             return fail(error, STATUS_INPUT,
-                        "%s: points.fibre: row %lld, at %s m, has no length: the stream has no fibres there",
-                        section->label.where, (long long)q, place);
+                        "%s: points.fibre: row %jd, at %s m, has no length: the stream has no fibres there",
+                        section->label.where, q, place);
         }
     }
     bool two = vector_dot(3, plane, plane) > 0.0;

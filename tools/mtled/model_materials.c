@@ -17,20 +17,19 @@ static enum status check_row(const struct model *model, const struct scene_mater
     const double *x = model->assembly.x + q * dim, *values = table->values + row * table->cols;
     if (row == table->rows) {
         return fail(error, STATUS_INPUT,
-                    "%s: table %s: %lld rows do not match the integration points of its regions: none is "
-                    "left for point %lld",
-                    section->label.where, section->table, (long long)table->rows, (long long)q);
+                    "%s: table %s: %jd rows do not match the integration points of its regions: none is "
+                    "left for point %jd",
+                    section->label.where, section->table, table->rows, q);
     }
     double away = model_away(model, values, section->table_unit, x);
     if (!(away <= MODEL_SAME_PLACE)) {
         return fail(error, STATUS_INPUT,
-                    "%s: %s:%lld: the rows do not match the integration points of its regions: %g m from "
-                    "point %lld: wrong unit, or make the table anew from this stream",
-                    section->label.where, section->table, (long long)table->line[row],
-                    away * model->assembly.extent, (long long)q);
+                    "%s: %s:%jd: the rows do not match the integration points of its regions: %g m from "
+                    "point %jd: wrong unit, or make the table anew from this stream",
+                    section->label.where, section->table, table->line[row], away * model->assembly.extent, q);
     }
-    return fail_in(error, moduli_check(values + dim, error), "%s: %s:%lld", section->label.where,
-                   section->table, (long long)table->line[row]);
+    return fail_in(error, moduli_check(values + dim, error), "%s: %s:%jd", section->label.where,
+                   section->table, table->line[row]);
 }
 
 /* Read a table with one row for each integration point of the section's regions, in their order: coordinates,
@@ -57,8 +56,8 @@ static enum status add_point_table(struct model *model, int64_t m, struct error 
         list->of_point[q] = (int32_t)list->count++;
     }
     if (row != table.rows) {
-        return fail(error, STATUS_INPUT, "%s: table %s: %lld rows for %lld integration points",
-                    section->label.where, section->table, (long long)table.rows, (long long)row);
+        return fail(error, STATUS_INPUT, "%s: table %s: %jd rows for %jd integration points",
+                    section->label.where, section->table, table.rows, row);
     }
     return STATUS_OK;
 }

@@ -9,8 +9,7 @@ static void show_progress(struct display *display, const struct progress *progre
         return;
     }
     display->last = now;
-    fprintf(stderr, "\rstep %lld  time %.3f  error %.1e", (long long)progress->step, progress->time,
-            progress->error);
+    fprintf(stderr, "\rstep %jd  time %.3f  error %.1e", progress->step, progress->time, progress->error);
     if (progress->remaining >= 0.0 && progress->remaining < 1.0) {
         fprintf(stderr, "  %.0f s left  ",
                 (now - display->started) * progress->remaining / (1.0 - progress->remaining));

@@ -105,7 +105,7 @@ static void resume(struct run *run)
     if (!checkpoint->is_restored) {
         return;
     }
-    tool_note(run->tool, "going on from step %lld, kept in %s", (long long)step, checkpoint->file);
+    tool_note(run->tool, "going on from step %jd, kept in %s", step, checkpoint->file);
     checkpoint->state = checkpoint_state(&checkpoint->restored);
     take_tables(run);
     TOOL_TRY(run->tool, visit_own(run, &checkpoint->state, &error));
@@ -193,8 +193,8 @@ static enum status keep(struct run *run, const struct progress *progress, bool i
             (void)ignored;
             return checkpoint->status;
         }
-        tool_note(run->tool, "no checkpoint at step %lld: %s; the one before stays",
-                  (long long)progress->step, checkpoint->error.text);
+        tool_note(run->tool, "no checkpoint at step %jd: %s; the one before stays", progress->step,
+                  checkpoint->error.text);
     }
     return STATUS_OK;
 }
@@ -230,7 +230,7 @@ void run_checkpoint_stop(struct run *run, int64_t steps)
     const char *rest = checkpoint->file == NULL          ? "to be able to go on, use -c"
                        : checkpoint->status != STATUS_OK ? "no checkpoint: "
                                                          : "the same command goes on from ";
-    run_fail(run, status, "ended by SIG%s after step %lld: %s%s", name, (long long)steps, rest,
+    run_fail(run, status, "ended by SIG%s after step %jd: %s%s", name, steps, rest,
              checkpoint->file == NULL          ? ""
              : checkpoint->status != STATUS_OK ? checkpoint->error.text
                                                : checkpoint->file);

@@ -34,40 +34,40 @@ static void judge(struct run *run, const struct dynamics_report *report)
         return;
     case DYNAMICS_INVERTED:
         run_fail(run, STATUS_VERDICT,
-                 "%s: step %lld, t = %.6g s: integration point %lld at %s is inverted (J = %.3g): apply the "
+                 "%s: step %jd, t = %.6g s: integration point %jd at %s is inverted (J = %.3g): apply the "
                  "load more slowly, or a smaller one, lower time_step_margin (%g), or refine there",
-                 scene->path, (long long)report->steps, report->time, (long long)report->point, place,
-                 report->least_jacobian, scene->solver.time_step_margin);
+                 scene->path, report->steps, report->time, report->point, place, report->least_jacobian,
+                 scene->solver.time_step_margin);
     case DYNAMICS_COLLAPSED:
         run_fail(run, STATUS_VERDICT,
-                 "%s: step %lld, t = %.6g s: the critical step has fallen below %g of the first one "
-                 "(%.3g s), by node %lld at %s: apply a smaller load, or refine there",
-                 scene->path, (long long)report->steps, report->time, DYNAMICS_LEAST_STEP, report->first_step,
-                 (long long)report->node, place);
+                 "%s: step %jd, t = %.6g s: the critical step has fallen below %g of the first one "
+                 "(%.3g s), by node %jd at %s: apply a smaller load, or refine there",
+                 scene->path, report->steps, report->time, DYNAMICS_LEAST_STEP, report->first_step,
+                 report->node, place);
     case DYNAMICS_DRIFTED:
         run_fail(run, STATUS_VERDICT,
-                 "%s: step %lld, t = %.6g s: the energy balance is off by %.2g of the largest energy (most "
-                 "%g), the fastest is node %lld at %s: %s",
-                 scene->path, (long long)report->steps, report->time, report->last_drift, DYNAMICS_MOST_DRIFT,
-                 (long long)report->node, place, drift_remedy);
+                 "%s: step %jd, t = %.6g s: the energy balance is off by %.2g of the largest energy (most "
+                 "%g), the fastest is node %jd at %s: %s",
+                 scene->path, report->steps, report->time, report->last_drift, DYNAMICS_MOST_DRIFT,
+                 report->node, place, drift_remedy);
     case DYNAMICS_STOPPED:
         run_checkpoint_stop(run, report->steps);
     case DYNAMICS_TOO_MANY_STEPS:
     default:
         run_fail(run, STATUS_VERDICT,
-                 "%s: t = %.6g s of %.6g s after %lld steps of %.3g s: allow more (max_steps)", scene->path,
-                 report->time, scene->solver.end_time, (long long)report->steps, report->least_step);
+                 "%s: t = %.6g s of %.6g s after %jd steps of %.3g s: allow more (max_steps)", scene->path,
+                 report->time, scene->solver.end_time, report->steps, report->least_step);
     }
 }
 
 static void print_report(const struct run *run, const struct dynamics_report *report)
 {
     const struct body *body = &run->model->system.body;
-    fprintf(stderr, "points\t%lld\nmerged cells\t%lld\npairs\t%lld\nsteps\t%lld\nforce evaluations\t%lld\n",
-            (long long)body->point_count, (long long)body->cells.merged_count, (long long)body->pair_count,
-            (long long)report->steps, (long long)report->force_evaluations);
-    fprintf(stderr, "critical step, s\t%.6g\nfirst step, s\t%.6g\nleast step, s\t%.6g\nstep changes\t%lld\n",
-            report->critical_step, report->first_step, report->least_step, (long long)report->step_changes);
+    fprintf(stderr, "points\t%jd\nmerged cells\t%jd\npairs\t%jd\nsteps\t%jd\nforce evaluations\t%jd\n",
+            body->point_count, body->cells.merged_count, body->pair_count, report->steps,
+            report->force_evaluations);
+    fprintf(stderr, "critical step, s\t%.6g\nfirst step, s\t%.6g\nleast step, s\t%.6g\nstep changes\t%jd\n",
+            report->critical_step, report->first_step, report->least_step, report->step_changes);
     fprintf(stderr, "largest energy error\t%.3g\nleast J\t%.4g\n", report->largest_drift,
             report->least_jacobian);
 }

@@ -175,8 +175,8 @@ void run_report_springs(const struct run *run)
             }
         }
         if (count > 0) {
-            fprintf(stderr, "springs of %s\t%lld components, off by %.4g m (root mean square)\n",
-                    run->scene->displacements[d].label.name, (long long)count, sqrt(sum / (double)count));
+            fprintf(stderr, "springs of %s\t%jd components, off by %.4g m (root mean square)\n",
+                    run->scene->displacements[d].label.name, count, sqrt(sum / (double)count));
         }
     }
 }

@@ -45,10 +45,10 @@ void run_frames_check(const struct run *run)
     int64_t most = (STREAM_SECTION_LIMIT - others) / of_frame - 1;
     if (frames > (double)most) {
         tool_fail(run->tool, STATUS_INPUT,
-                  "%s: [output]: %.12g frames of %lld sections each, where a stream has at most %d sections: "
+                  "%s: [output]: %.12g frames of %jd sections each, where a stream has at most %d sections: "
                   "ask for "
-                  "at most %lld frames (frames, interval)",
-                  run->scene->path, frames, (long long)of_frame, STREAM_SECTION_LIMIT, (long long)most);
+                  "at most %jd frames (frames, interval)",
+                  run->scene->path, frames, of_frame, STREAM_SECTION_LIMIT, most);
     }
 }
 

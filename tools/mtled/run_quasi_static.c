@@ -48,10 +48,9 @@ static void judge(struct run *run, const struct statics_report *report)
                   "help"
                 : ": it hardly resists some motion, as a slender body that has buckled may turn: a larger "
                   "tolerance, or supports against that motion may help";
-        run_fail(
-            run, STATUS_VERDICT,
-            "%s: step %lld%s: the estimated error stays at %.2g of the displacement, most of all at %s%s",
-            scene->path, (long long)report->steps, load, report->error, place, remedy);
+        run_fail(run, STATUS_VERDICT,
+                 "%s: step %jd%s: the estimated error stays at %.2g of the displacement, most of all at %s%s",
+                 scene->path, report->steps, load, report->error, place, remedy);
     }
     if (report->outcome == STATICS_STOPPED) {
         run_checkpoint_stop(run, report->steps);
@@ -59,21 +58,21 @@ static void judge(struct run *run, const struct statics_report *report)
     if (report->outcome == STATICS_INVERTED) {
         const double *x = run->model->assembly.x + report->inverted_point * scene->dim;
         run_fail(run, STATUS_VERDICT,
-                 "%s: step %lld%s: integration point %lld at %s inverts (J = %.3g), however slowly the load "
+                 "%s: step %jd%s: integration point %jd at %s inverts (J = %.3g), however slowly the load "
                  "grows: %s",
-                 scene->path, (long long)report->steps, load, (long long)report->inverted_point,
-                 POINT_TEXT(scene->dim, x), report->least_jacobian, beyond_limit);
+                 scene->path, report->steps, load, report->inverted_point, POINT_TEXT(scene->dim, x),
+                 report->least_jacobian, beyond_limit);
     }
     if (report->outcome == STATICS_AWAY) {
         run_fail(run, STATUS_VERDICT,
-                 "%s: step %lld%s: the body moves on, by %.3g m so far, and does not come to rest: %s",
-                 scene->path, (long long)report->steps, load, report->move,
+                 "%s: step %jd%s: the body moves on, by %.3g m so far, and does not come to rest: %s",
+                 scene->path, report->steps, load, report->move,
                  system_has_friction(&run->model->system) ? slides + 2 : beyond_limit);
     }
     run_fail(run, STATUS_VERDICT,
-             "%s: not converged after %lld steps%s: estimated remaining error %.2g of the displacement, "
+             "%s: not converged after %jd steps%s: estimated remaining error %.2g of the displacement, "
              "most of all at %s: allow more (max_steps), or hold the body against rigid motion",
-             scene->path, (long long)report->steps, load, report->error, place);
+             scene->path, report->steps, load, report->error, place);
 }
 
 /* The estimated error of the iteration, m: of the relaxation, and of the remaining penetration of
@@ -244,11 +243,10 @@ void run_quasi_static(struct run *run)
     put_error(run);
     if (run->verbose) {
         fprintf(stderr,
-                "points\t%lld\nmerged cells\t%lld\npairs\t%lld\nsteps\t%lld\nloading steps\t%lld\nforce "
-                "evaluations\t%lld\n",
-                (long long)body->point_count, (long long)body->cells.merged_count,
-                (long long)body->pair_count, (long long)report.steps, (long long)report.loading_steps,
-                (long long)report.force_evaluations);
+                "points\t%jd\nmerged cells\t%jd\npairs\t%jd\nsteps\t%jd\nloading steps\t%jd\nforce "
+                "evaluations\t%jd\n",
+                body->point_count, body->cells.merged_count, body->pair_count, report.steps,
+                report.loading_steps, report.force_evaluations);
         fprintf(stderr, "iteration error, m\t%.3g\ndiscretisation error, m\tsee fielderr\n", run->error);
         if (in_time) {
             fprintf(stderr, "error of the steps of time\t%.2g\n", body_time_error(body));

@@ -19,7 +19,7 @@ static void put(const struct run *run, const struct instant *instant, const char
         run_put(run, name, rows, cols, attributes, values);
         return;
     }
-    snprintf(full, sizeof full, "%s.frame.%lld", name, (long long)instant->frame);
+    snprintf(full, sizeof full, "%s.frame.%jd", name, instant->frame);
     snprintf(timed, sizeof timed, "%s time=%.12g", attributes, instant->time);
     run_put(run, full, rows, cols, timed, values);
 }

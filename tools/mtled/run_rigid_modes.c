@@ -130,7 +130,7 @@ static struct told tell(const struct run *run, const struct bodies *bodies, int6
     modes_text(input->cells.dim, input->extent, &bodies->modes[b], told.what, sizeof told.what);
     if (bodies->count > 1) {
         TOOL_TRY(run->tool, stream_groups(run->stream, GROUP_REGION, true, &regions, &error));
-        snprintf(told.body, sizeof told.body, "body %lld (region %s, near %s)", (long long)b + 1,
+        snprintf(told.body, sizeof told.body, "body %jd (region %s, near %s)", b + 1,
                  regions.names.name[regions.group[bodies->cell[b]]],
                  POINT_TEXT(input->cells.dim, bodies->modes[b].centre));
     }
@@ -165,7 +165,7 @@ void run_check_rigid_modes(struct run *run)
             int64_t more = count_free(&bodies, b + 1);
             char others[64] = "";
             if (more > 0) {
-                snprintf(others, sizeof others, "; %lld more bod%s free as well", (long long)more,
+                snprintf(others, sizeof others, "; %jd more bod%s free as well", more,
                          more == 1 ? "y is" : "ies are");
             }
             run_fail(run, STATUS_VERDICT,

@@ -24,8 +24,8 @@ void run_start_read(struct run *run)
     side_read(run->tool, file, "u", &run->start);
     const struct nodal_field *field = &run->start.field;
     if (field->cells.dim != scene->dim || field->cols != scene->dim) {
-        tool_fail(run->tool, STATUS_INPUT, "--start: %s: u has %lld columns in %dD, where the scene has %dD",
-                  file, (long long)field->cols, field->cells.dim, scene->dim);
+        tool_fail(run->tool, STATUS_INPUT, "--start: %s: u has %jd columns in %dD, where the scene has %dD",
+                  file, field->cols, field->cells.dim, scene->dim);
     }
     if (field->cells.count == 0) {
         tool_fail(run->tool, STATUS_INPUT, "--start: %s: has no cells, between which u is interpolated",
