@@ -10,20 +10,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Put an array of the body, which the stream takes, with the attributes that the section has. */
-static enum status put(struct stream *stream, const char *name, enum element_type type, int64_t rows,
-                       int64_t cols, void *array, struct error *error)
-{
-    const struct section *before = stream_find(stream, name);
-    SCRATCH char *attributes = strdup(before != NULL ? before->attributes : "");
-    void *data = array_take(array);
-    if (attributes == NULL) {
-        free(data);
-        return fail_memory(error, name);
-    }
-    return stream_put(stream, name, type, rows, cols, attributes, data, true, error);
-}
-
 /* ---- node sets ---- */
 
 /* in[nodes]: a node on an edge is in a set if both ends are, a copy if its original is. */
@@ -228,6 +214,7 @@ enum status cut_body_put(struct cut_body *whole, const bool *kept, struct stream
 {
     struct division *body = &whole->body;
     int64_t nodes = body->node_count;
+    char attributes[64];
     SCRATCH double *fibre = NULL;
     NEW_SCRATCH(bool, edge, nodes, error);
     NEW_SCRATCH(int32_t, kept_as, nodes, error);
@@ -244,8 +231,11 @@ enum status cut_body_put(struct cut_body *whole, const bool *kept, struct stream
     RETURN_IF_ERROR(put_regions(whole, stream, error));
     RETURN_IF_ERROR(stream_put_groups(stream, GROUP_FACETS, &whole->facets.names, body->facet_count,
                                       &body->facet, &body->group, error));
-    RETURN_IF_ERROR(put(stream, "cells", TYPE_I4, body->cell_count, body->dim + 1, &body->node, error));
-    RETURN_IF_ERROR(put(stream, "nodes.x", TYPE_F8, body->node_count, body->dim, &body->x, error));
+    RETURN_IF_ERROR(stream_put(stream, "cells", TYPE_I4, body->cell_count, body->dim + 1, "",
+                               array_take(&body->node), true, error));
+    RETURN_IF_ERROR(stream_put(stream, "nodes.x", TYPE_F8, body->node_count, body->dim,
+                               vector_attributes(body->dim, "m", attributes), array_take(&body->x), true,
+                               error));
     sections_remove(stream, MADE_WITH_POINTS, MADE_WITH_RESULTS);
     return put_fibres(stream, body->dim, body->cell_count, &fibre, error);
 }
