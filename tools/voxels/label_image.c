@@ -191,44 +191,23 @@ static void choose_slice(const struct tool *tool, struct image *image, const cha
     take_slice(image, axis, (size_t)fmax(0, floor(index + 0.5)));
 }
 
-/* Set the plane of an image of one slice, which must be perpendicular to a world axis. */
-static void set_plane(const struct tool *tool, const struct image *image, struct labels *labels)
+/* Set the space of the labels. The axes of an image of one slice are brought into the order of a body in it.
+ */
+static void set_space(const struct tool *tool, struct image *image, struct label_image *result)
 {
-    int flat = -1, flats = 0, count = 0;
-    for (int d = 0; d < 3; d++) {
-        if (image->size[d] == 1) {
-            flat = d;
-            flats++;
-        }
-    }
+    struct labels *labels = &result->labels;
+    struct image_axes axes;
+    int flats = (image->size[0] == 1) + (image->size[1] == 1) + (image->size[2] == 1);
     if (flats > 1) {
         tool_fail(tool, STATUS_INPUT, "the image is one line of voxels");
     }
     labels->dim = flats == 1 ? 2 : 3;
-    if (labels->dim == 3) {
-        return;
-    }
-    int world = image_axis_across(image, flat);
-    if (world < 0) {
-        tool_fail(tool, STATUS_INPUT, "the slice is oblique to the world's axes: resample it first");
-    }
-    for (int d = 0; d < 3; d++) {
-        if (d != world) {
-            labels->axis[count++] = d;
-        }
-    }
-    labels->across = image->to_world[world][3];
-}
-
-static void set_space(const struct tool *tool, const struct image *image, struct label_image *result)
-{
-    struct labels *labels = &result->labels;
+    image_to_body(tool, image, labels->dim, &axes);
+    labels->across = image->to_world[2][3];
     for (int d = 0; d < 3; d++) {
         labels->size[d] = (int64_t)image->size[d];
     }
     image_to_voxel(image, labels->to_voxel);
-    labels->dim = 3;
-    set_plane(tool, image, labels);
     result->voxel_volume = labels_voxel_volume(labels);
 }
 

@@ -3,31 +3,14 @@
 #include "approx/labels/label_cells.h"
 #include "base/memory.h"
 
-/* The grid of the labels; for a slice without the axis across it. */
-struct grid {
-    int64_t size[3];
-    int axis[3]; /* of the labels' grid */
-};
-
-static struct grid grid_of(const struct labels *labels)
-{
-    struct grid grid = {.size = {1, 1, 1}};
-    int count = 0;
-    for (int d = 0; d < 3; d++) {
-        if (labels->dim == 3 || labels->size[d] > 1) {
-            grid.axis[count] = d;
-            grid.size[count++] = labels->size[d];
-        }
-    }
-    return grid;
-}
+#include <string.h>
 
 /* Whether a cell of the label contains a voxel or one that touches it. For a label that is not kept: whether
  * one of these voxels is in no cell, or beyond the grid. */
-static bool is_near(const struct grid *grid, const struct label_cells *mesh, const int32_t *owner,
+static bool is_near(const struct labels *labels, const struct label_cells *mesh, const int32_t *owner,
                     int64_t voxel, int32_t label, bool kept)
 {
-    const int64_t *n = grid->size;
+    const int64_t *n = labels->size;
     const int64_t at[3] = {voxel % n[0], voxel / n[0] % n[1], voxel / n[0] / n[1]};
     for (int k = 0; k < (n[2] > 1 ? 27 : 9); k++) {
         const int64_t next[3] = {at[0] + k % 3 - 1, at[1] + k / 3 % 3 - 1,
@@ -45,8 +28,8 @@ static bool is_near(const struct grid *grid, const struct label_cells *mesh, con
 }
 
 /* owner[voxels]: the cell that contains the voxel's centre, or -1. */
-static enum status own_voxels(const struct labels *labels, const struct label_cells *mesh,
-                              const struct grid *grid, int32_t *owner, struct error *error)
+static enum status own_voxels(const struct labels *labels, const struct label_cells *mesh, int32_t *owner,
+                              struct error *error)
 {
     int dim = labels->dim;
     int64_t doubly;
@@ -54,12 +37,10 @@ static enum status own_voxels(const struct labels *labels, const struct label_ce
     for (int64_t n = 0; n < mesh->node_count; n++) {
         double voxel[3];
         labels_to_voxel(labels, mesh->x + n * dim, voxel);
-        for (int d = 0; d < dim; d++) {
-            x[n * dim + d] = voxel[grid->axis[d]];
-        }
+        memcpy(x + n * dim, voxel, (size_t)dim * sizeof *x);
     }
     struct cells cells = {dim, mesh->node_count, x, mesh->cell_count, mesh->cell};
-    raster_cells(&cells, mesh->cell_count > 0 && cell_volume(&cells, 0) < 0 ? -1 : 1, grid->size, owner,
+    raster_cells(&cells, mesh->cell_count > 0 && cell_volume(&cells, 0) < 0 ? -1 : 1, labels->size, owner,
                  &doubly);
     return STATUS_OK;
 }
@@ -67,17 +48,16 @@ static enum status own_voxels(const struct labels *labels, const struct label_ce
 enum status label_cells_lost(const struct labels *labels, const bool *keep, const struct label_cells *mesh,
                              int64_t *lost, struct error *error)
 {
-    struct grid grid = grid_of(labels);
-    int64_t voxels = grid.size[0] * grid.size[1] * grid.size[2];
+    int64_t voxels = labels->size[0] * labels->size[1] * labels->size[2];
     for (int32_t l = 0; l < labels->count; l++) {
         lost[l] = 0;
     }
     NEW_SCRATCH(int32_t, owner, voxels, error);
-    RETURN_IF_ERROR(own_voxels(labels, mesh, &grid, owner, error));
+    RETURN_IF_ERROR(own_voxels(labels, mesh, owner, error));
     for (int64_t v = 0; v < voxels; v++) {
         int32_t label = labels->label[v], there = owner[v] >= 0 ? mesh->label[owner[v]] : -1;
         if (there != (keep[label] ? label : -1)) {
-            lost[label] += !is_near(&grid, mesh, owner, v, label, keep[label]);
+            lost[label] += !is_near(labels, mesh, owner, v, label, keep[label]);
         }
     }
     return STATUS_OK;

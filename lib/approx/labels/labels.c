@@ -13,22 +13,9 @@ struct stencil {
     double weight[3][4], slope[3][4];
 };
 
-/* The three world coordinates of a point. */
-static void place(const struct labels *labels, const double x[], double world[3])
-{
-    if (labels->dim == 3) {
-        memcpy(world, x, 3 * sizeof *world);
-        return;
-    }
-    world[3 - labels->axis[0] - labels->axis[1]] = labels->across;
-    world[labels->axis[0]] = x[0];
-    world[labels->axis[1]] = x[1];
-}
-
 void labels_to_voxel(const struct labels *labels, const double x[], double voxel[3])
 {
-    double world[3];
-    place(labels, x, world);
+    const double world[3] = {x[0], x[1], labels->dim == 3 ? x[2] : labels->across};
     for (int d = 0; d < 3; d++) {
         const double *row = labels->to_voxel[d];
         voxel[d] = row[0] * world[0] + row[1] * world[1] + row[2] * world[2] + row[3];
@@ -166,7 +153,7 @@ double labels_difference(const struct labels *labels, const double x[], int32_t 
                          double gradient[])
 {
     struct stencil stencil;
-    double value = 0, slope[3] = {0}, world[3];
+    double value = 0, slope[3] = {0};
     stencil_at(labels, x, &stencil);
     for (int k = 0, r = 0; k < stencil.count[2]; k++) {
         for (int j = 0; j < stencil.count[1]; j++, r++) {
@@ -180,14 +167,11 @@ double labels_difference(const struct labels *labels, const double x[], int32_t 
             slope[2] += more * stencil.weight[1][j] * stencil.slope[2][k];
         }
     }
-    for (int d = 0; d < 3; d++) {
-        world[d] = 0;
-        for (int e = 0; e < 3; e++) {
-            world[d] += slope[e] * labels->to_voxel[e][d];
-        }
-    }
     for (int d = 0; d < labels->dim; d++) {
-        gradient[d] = world[labels->dim == 3 ? d : labels->axis[d]];
+        gradient[d] = 0;
+        for (int e = 0; e < 3; e++) {
+            gradient[d] += slope[e] * labels->to_voxel[e][d];
+        }
     }
     return value;
 }
@@ -227,8 +211,7 @@ void labels_box(const struct labels *labels, double low[], double high[])
                 (corner >> d & 1 ? (double)most[d] + 0.5 : (double)least[d] - 0.5) - labels->to_voxel[d][3];
         }
         for (int d = 0; d < labels->dim; d++) {
-            const double *row = inverse[labels->dim == 3 ? d : labels->axis[d]];
-            double x = row[0] * v[0] + row[1] * v[1] + row[2] * v[2];
+            double x = inverse[d][0] * v[0] + inverse[d][1] * v[1] + inverse[d][2] * v[2];
             low[d] = fmin(low[d], x);
             high[d] = fmax(high[d], x);
         }

@@ -8,15 +8,14 @@
 #include <stdint.h>
 
 /* The grid. Label 0 is the outside, also beyond the grid; along an axis with one voxel it extends without
- * end. Points have `dim` world coordinates, m: in 2D along the world axes `axis`, at `across` on the third.
- */
+ * end. Points have `dim` world coordinates, m: in 2D the first two axes, of the world and of the grid, lie in
+ * the slice, which is at `across` on the third axis of the world. */
 struct labels {
     int64_t size[3];
     const uint16_t *label; /* size[2] * size[1] * size[0], first index fastest; less than `count` */
     int32_t count;
     double to_voxel[3][4]; /* (world, m, 1) to voxel index, voxel centres */
     int dim;
-    int axis[2];
     double across;
 };
 
