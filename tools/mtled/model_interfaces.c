@@ -2,6 +2,7 @@
 #include "mtled/model.h"
 
 #include "approx/support/support.h"
+#include "base/lists.h"
 #include "base/sets.h"
 #include "base/vector.h"
 
@@ -91,19 +92,6 @@ static struct found search(const struct faces *faces, const int32_t *side, const
     return found;
 }
 
-/* A side, and the mean shear modulus of its cells. */
-struct ranked {
-    double modulus;
-    int32_t side;
-};
-
-static int compare_ranked(const void *a, const void *b)
-{
-    const struct ranked *first = a, *second = b;
-    return first->modulus != second->modulus ? (first->modulus < second->modulus ? 1 : -1)
-                                             : (first->side > second->side) - (first->side < second->side);
-}
-
 /* Number the sides by falling stiffness, and make the shape functions anew: the lower side owns an interface.
  */
 static enum status stiffest_first(struct stream *stream, int64_t cells, const int32_t *side,
@@ -116,17 +104,18 @@ static enum status stiffest_first(struct stream *stream, int64_t cells, const in
     }
     NEW_SCRATCH(int64_t, count, sides, error);
     NEW_SCRATCH(int32_t, rank, sides, error);
-    NEW_SCRATCH(struct ranked, ranked, sides, error);
+    NEW_SCRATCH(struct placed, by_modulus, sides, error); /* less the mean modulus of each side's cells */
     for (int64_t c = 0; c < cells; c++) {
         count[side[c]]++;
-        ranked[side[c]].modulus += of[c].high;
+        by_modulus[side[c]].place -= of[c].high;
     }
     for (int64_t s = 0; s < sides; s++) {
-        ranked[s] = (struct ranked){count[s] > 0 ? ranked[s].modulus / (double)count[s] : 0.0, (int32_t)s};
+        by_modulus[s].place /= count[s] > 0 ? (double)count[s] : 1.0;
+        by_modulus[s].item = s;
     }
-    qsort(ranked, (size_t)sides, sizeof *ranked, compare_ranked);
+    qsort(by_modulus, (size_t)sides, sizeof *by_modulus, compare_placed);
     for (int64_t s = 0; s < sides; s++) {
-        rank[ranked[s].side] = (int32_t)s;
+        rank[by_modulus[s].item] = (int32_t)s;
     }
     for (int64_t c = 0; c < cells; c++) {
         renewed[c] = rank[side[c]];

@@ -65,43 +65,39 @@ static enum status make_facets(const struct label_image *image, const struct lab
     return STATUS_OK;
 }
 
-/* Count the nodes of faces between two regions, once for each face; store them if there is an array. */
-static int64_t find_interfaces(const struct cells *cells, const int32_t *label, const int32_t *across,
-                               struct member *member)
+/* List the nodes of faces between two regions, once for each face. */
+static enum status find_interfaces(const struct cells *cells, const int32_t *label, struct member **member,
+                                   int64_t *count, struct error *error)
 {
     int corners = cells->dim + 1;
-    int64_t count = 0;
+    int64_t room = 0;
+    NEW_SCRATCH(int32_t, across, cells->count * corners, error);
+    RETURN_IF_ERROR(cells_across(cells, across, error));
     for (int64_t i = 0; i < cells->count * corners; i++) {
         int64_t c = i / corners;
-        if (across[i] < 0 || label[across[i]] <= label[c]) {
-            continue;
-        }
-        for (int k = 0; k < corners; k++) {
-            if (k == i % corners) {
-                continue;
+        for (int k = 0; k < corners && across[i] >= 0 && label[across[i]] > label[c]; k++) {
+            if (k != i % corners) {
+                RETURN_IF_ERROR(GROW_ARRAY(member, *count + 1, &room, error));
+                (*member)[(*count)++] =
+                    (struct member){label[c], label[across[i]], cells->node[c * corners + k]};
             }
-            if (member != NULL) {
-                member[count] = (struct member){label[c], label[across[i]], cells->node[c * corners + k]};
-            }
-            count++;
         }
     }
-    return count;
+    return STATUS_OK;
 }
 
 static enum status make_sets(const struct label_image *image, const struct label_cells *result,
                              struct mesh *mesh, struct error *error)
 {
     struct cells cells = label_cells_view(result);
-    int64_t kept = 0;
-    NEW_SCRATCH(int32_t, across, cells.count * (cells.dim + 1), error);
-    RETURN_IF_ERROR(cells_across(&cells, across, error));
-    int64_t count = find_interfaces(&cells, result->label, across, NULL);
-    NEW_SCRATCH(struct member, member, count, error);
+    int64_t kept = 0, count = 0;
+    SCRATCH struct member *member = NULL;
+    RETURN_IF_ERROR(find_interfaces(&cells, result->label, &member, &count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&mesh->set_idx, count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&mesh->set_ptr, count + 1, error));
-    find_interfaces(&cells, result->label, across, member);
-    qsort(member, (size_t)count, sizeof *member, compare_members);
+    if (count > 0) {
+        qsort(member, (size_t)count, sizeof *member, compare_members);
+    }
     for (int64_t i = 0; i < count; i++) {
         if (i > 0 && compare_members(&member[i], &member[i - 1]) == 0) {
             continue;
