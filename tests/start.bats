@@ -144,14 +144,14 @@ begin_from_coarse() {
     refused 2 "coarse.mts: no section u" mtled -s coarse.mts push.scene fine.mts
     refused 2 "none.dat: No such file or directory" mtled -s none.dat push.scene fine.mts
     mts drop cells coarse.dat > bare.dat
-    refused 2 "--start: bare.dat: has no cells" mtled -s bare.dat push.scene fine.mts
+    refused 2 "bare.dat: has no cells" mtled -s bare.dat push.scene fine.mts
     cloud -d 3 -k regular -n 3 --box 0,0.1,0,0.1,0,0.1 | shapefn > cube.mts 2> note
     pressed_cube zmin zmax -0.005 > cube.scene
     mtled -q -o cube.dat cube.scene cube.mts
-    refused 2 "--start: cube.dat: u has 3 columns in 3D, where the scene has 2D" mtled -s cube.dat push.scene fine.mts
+    refused 2 "cube.dat: u has 3 columns in 3D, where 2D is wanted" mtled -s cube.dat push.scene fine.mts
     cloud -d 2 -k regular -n 4 --box 0,0.1,0,0.05 | shapefn > half.mts 2> note
     mtled -q -o half.dat push.scene half.mts
     refused 2 "--start: half.dat: node " mtled -s half.dat push.scene fine.mts
     awk '/^# / { on = $2 == "u" || $2 == "parameters"; print; next } on && NF { print "nan nan"; next } { print }' coarse.dat > nan.dat
-    refused 2 "--start: nan.dat: u has values that are not finite numbers" mtled -s nan.dat push.scene fine.mts
+    refused 2 "nan.dat: u has values that are not finite numbers" mtled -s nan.dat push.scene fine.mts
 }

@@ -47,7 +47,6 @@ static const char usage[] =
 #include "io/files/surface.h"
 #include "stages/incise.h"
 
-#include <math.h>
 #include <string.h>
 
 /* Pieces that are smaller than this part of the body are noted. */
@@ -88,19 +87,13 @@ static enum status deform(const struct tool *tool, const struct stream *stream, 
     struct cells cells;
     struct side side;
     RETURN_IF_ERROR(stream_cells(stream, true, &cells, error));
-    side_read(tool, file, "u", &side);
+    side_read_displacement(tool, file, "u", cells.dim, &side);
     const struct nodal_field *field = &side.field;
-    if (field->cells.dim != cells.dim || field->cols != cells.dim || field->cells.count == 0) {
-        tool_fail(tool, STATUS_INPUT, "-d: %s: has no u with a column for each dimension and cells", file);
-    }
     RETURN_IF_ERROR(NEW_ARRAY(at, cells.node_count * cells.dim, error));
     RETURN_IF_ERROR(fail_in(error, field_carry(&field->cells, field->cols, field->values, &cells, *at, error),
                             "-d: %s", file));
     for (int64_t i = 0; i < cells.node_count * cells.dim; i++) {
         (*at)[i] += cells.x[i];
-        if (!isfinite((*at)[i])) {
-            tool_fail(tool, STATUS_INPUT, "-d: %s: u has values that are not finite numbers", file);
-        }
     }
     stream_free(&side.stream);
     return STATUS_OK;

@@ -52,8 +52,8 @@ static const char usage[] =
     "  warp --field -o field.nrrd T1.nrrd u.dat\n"
     "  plastimatch warp --input T1.nrrd --xf field.nrrd --output-img predicted.nrrd\n";
 
+#include "comparison.h"
 #include "images/images.h"
-#include "stages/stages.h"
 #include "warp/warp_voxels.h"
 
 #include "approx/field/motion.h"
@@ -120,21 +120,6 @@ static void parse(const struct tool *tool, struct warp_request *request)
                  tool_integer(tool, "frame", 0, INT32_MAX, 0));
     }
     tool_check_image_output(tool);
-}
-
-static const double *find_field(const struct tool *tool, const struct stream *stream, const char *name,
-                                struct cells *cells)
-{
-    const struct section *u;
-    TOOL_TRY(tool, stream_cells(stream, true, cells, &error));
-    TOOL_TRY(tool, stream_field(stream, name, cells->dim, cells->node_count, &u, &error));
-    const double *values = u->data;
-    for (int64_t i = 0; i < u->rows * u->cols; i++) {
-        if (!(fabs(values[i]) <= 1e100)) {
-            tool_fail(tool, STATUS_INPUT, "%s: row %jd: is not finite", name, (i / u->cols));
-        }
-    }
-    return values;
 }
 
 static void print_report(const struct tool *tool, const struct warp_request *request,
@@ -252,20 +237,16 @@ static void note_not_finite(const struct tool *tool, const struct image *image, 
 }
 
 /* Build the motion, with gradients of the field that mtled computed, if the stream has it. */
-static void build_motion(const struct tool *tool, const struct stream *stream, const char *section,
-                         const struct cells *cells, const double *u, struct motion *motion)
+static void build_motion(const struct tool *tool, const struct nodal_field *u, struct motion *motion)
 {
     struct error error;
-    struct recorded recorded;
-    tool_check(tool, stage_recorded(stream, "parameters", &recorded, &error), &error);
-    const struct section *field = stream_find(stream, section);
-    const struct section *parameters = solved_parameters(stream, &recorded, field);
-    struct motion_source source = {&recorded.support, &recorded.shapes, recorded.radius, parameters->data};
-    enum status status = motion_build(cells, u, false, parameters != field ? &source : NULL, motion, &error);
+    struct motion_source source = {u->support, u->shapes, u->radius, u->parameters};
+    enum status status =
+        motion_build(&u->cells, u->values, false, u->parameters != NULL ? &source : NULL, motion, &error);
     if (status == STATUS_VERDICT) {
         tool_note(tool, "displacement taken as linear in each cell: %s", error.text);
         motion_free(motion);
-        status = motion_build(cells, u, true, NULL, motion, &error);
+        status = motion_build(&u->cells, u->values, true, NULL, motion, &error);
     }
     tool_check(tool, status, &error);
 }
@@ -301,11 +282,10 @@ static int32_t *find_seen(const struct tool *tool, const struct image *grid, con
 int main(int argc, char *argv[])
 {
     struct tool tool;
-    FREED_BY(stream_free) struct stream stream = {0};
+    struct side side;
     struct warp_request request;
     struct warp_report report = {0};
     FREED_BY(image_free) struct image image = {0}, like = {0}, result = {0};
-    struct cells cells;
     FREED_BY(motion_free) struct motion motion = {0};
     struct image_axes axes; /* of the grid */
     tool_begin(&tool, usage, 1, 2, argc, argv);
@@ -316,10 +296,10 @@ int main(int argc, char *argv[])
     if (tool_given(&tool, "like")) {
         tool_read_image(&tool, tool_value(&tool, "like"), &like);
     }
-    tool_read(&tool, tool.operands[1], &stream);
-    const double *u = find_field(&tool, &stream, request.section, &cells);
+    side_read_displacement(&tool, tool.operands[1], request.section, 0, &side);
+    const struct cells cells = side.field.cells;
     turn_images(&tool, cells.dim, &image, &like, &axes);
-    build_motion(&tool, &stream, request.section, &cells, u, &motion);
+    build_motion(&tool, &side.field, &motion);
     const struct image *grid = tool_given(&tool, "like") ? &like : &image;
     const double *seen = request.inverse ? cells.x : motion.moved;
     const double *unseen = request.inverse ? motion.moved : cells.x;
@@ -343,6 +323,7 @@ int main(int argc, char *argv[])
     warp_voxels(&job, &report);
     print_report(&tool, &request, &motion, grid, &report);
     image_from_body(&result, &axes);
+    stream_free(&side.stream);
     tool_write_image(&tool, &result);
     return tool_end(&tool);
 }

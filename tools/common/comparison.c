@@ -42,9 +42,28 @@ static enum status view_side(struct side *side, const char *field, struct error 
 
 void side_read(const struct tool *tool, const char *file, const char *field, struct side *side)
 {
-    *side = (struct side){.name = strcmp(file, "-") == 0 ? "standard input" : file};
+    *side = (struct side){.name = file == NULL || strcmp(file, "-") == 0 ? "standard input" : file};
     tool_read(tool, file, &side->stream);
     TOOL_TRY(tool, fail_in(&error, view_side(side, field, &error), "%s", side->name));
+}
+
+void side_read_displacement(const struct tool *tool, const char *file, const char *field, int dim,
+                            struct side *side)
+{
+    side_read(tool, file, field, side);
+    const struct nodal_field *u = &side->field;
+    dim = dim > 0 ? dim : u->cells.dim;
+    if (u->cells.dim != dim || u->cols != dim) {
+        tool_fail(tool, STATUS_INPUT, "%s: %s has %jd columns in %dD, where %dD is wanted", side->name, field,
+                  u->cols, u->cells.dim, dim);
+    }
+    if (u->cells.count == 0) {
+        tool_fail(tool, STATUS_INPUT, "%s: has no cells, between which %s is interpolated", side->name,
+                  field);
+    }
+    if (!isfinite(field_largest(u->cells.node_count, u->cols, u->values))) {
+        tool_fail(tool, STATUS_INPUT, "%s: %s has values that are not finite numbers", side->name, field);
+    }
 }
 
 void sides_check(const struct tool *tool, const struct side *first, const struct side *second)

@@ -1,4 +1,4 @@
-/* The difference of nodal fields of two streams, and its output: shared by fieldcmp and fielderr. */
+/* Fields of streams; their difference, and its output: shared by fieldcmp and fielderr. */
 #pragma once
 
 #include "stages/stages.h"
@@ -27,8 +27,12 @@ struct findings {
 /* Check the options of both programs; exits for invalid values. Returns the name of the field. */
 const char *comparison_field(const struct tool *tool);
 
-/* Read a stream and its field; exits on failure. */
+/* Read a stream (NULL or "-": standard input) and its field; exits on failure. */
 void side_read(const struct tool *tool, const char *file, const char *field, struct side *side);
+
+/* The same, where the field must be a displacement of finite values in dim dimensions (0: any), on cells. */
+void side_read_displacement(const struct tool *tool, const char *file, const char *field, int dim,
+                            struct side *side);
 
 /* Exits if the fields have different dimensions or columns. */
 void sides_check(const struct tool *tool, const struct side *first, const struct side *second);

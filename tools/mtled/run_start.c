@@ -2,9 +2,6 @@
  * other materials or loads. */
 #include "mtled/run.h"
 
-#include <math.h>
-#include <string.h>
-
 /* The least share of a field that a run begins at. */
 static const double least_start = 0.05;
 
@@ -21,16 +18,7 @@ void run_start_read(struct run *run)
                   "--start: the run begins at the whole load: a scene in time, with friction, or that asks "
                   "for frames, has states before");
     }
-    side_read(run->tool, file, "u", &run->start);
-    const struct nodal_field *field = &run->start.field;
-    if (field->cells.dim != scene->dim || field->cols != scene->dim) {
-        tool_fail(run->tool, STATUS_INPUT, "--start: %s: u has %jd columns in %dD, where the scene has %dD",
-                  file, field->cols, field->cells.dim, scene->dim);
-    }
-    if (field->cells.count == 0) {
-        tool_fail(run->tool, STATUS_INPUT, "--start: %s: has no cells, between which u is interpolated",
-                  file);
-    }
+    side_read_displacement(run->tool, file, "u", scene->dim, &run->start);
 }
 
 /* A body that has been cut may be inverted, at the edge of an earlier cut, in a field that was none of its
@@ -54,7 +42,6 @@ static void halve_inverted(struct run *run)
 
 void run_start(struct run *run)
 {
-    struct solid_system *system = &run->model->system;
     const struct nodal_field *field = &run->start.field;
     if (run->start_file == NULL) {
         return;
@@ -64,10 +51,6 @@ void run_start(struct run *run)
                                 field_carry(&field->cells, field->cols, values, &run->model->assembly.cells,
                                             run->u, &error),
                                 "--start: %s", run->start.name));
-    if (!isfinite(field_largest(system->node_count, system->dim, run->u))) {
-        tool_fail(run->tool, STATUS_INPUT, "--start: %s: u has values that are not finite numbers",
-                  run->start.name);
-    }
     halve_inverted(run);
-    TOOL_TRY(run->tool, system_start(system, run->u, &error));
+    TOOL_TRY(run->tool, system_start(&run->model->system, run->u, &error));
 }
