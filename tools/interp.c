@@ -48,6 +48,7 @@ static const char usage[] =
 
 #include "stage_options.h"
 #include "output.h"
+#include "points.h"
 #include "stages/stages.h"
 
 #include "approx/field/field.h"
@@ -58,12 +59,10 @@ static const char usage[] =
 #include <string.h>
 
 /* Points with their neighbours and shape functions. */
-struct points {
+struct evaluated {
     struct recorded solved; /* the computed field whose shape functions these are, if any */
-    int64_t count;
-    double *x;           /* count * dim, m; owned */
-    int64_t *row;        /* count: of the file; owned */
-    char **label, *text; /* names of its rows, in text; NULL: none; owned */
+    struct points at;
+    int64_t *row; /* at.count: of the file; owned */
     struct field_table table;
 };
 
@@ -96,80 +95,56 @@ static struct support_options parse(const struct tool *tool, int dim)
     return support;
 }
 
-static void read_table(const struct tool *tool, const char *file, const char *unit_name, int dim,
-                       struct points *points)
-{
-    FREED_BY(table_free) struct table table = {0};
-    double unit = table_unit(file, 1), given = unit;
-    if (unit_name != NULL) {
-        TOOL_TRY(tool, parse_length_unit(unit_name, "-u", &given, &error));
-        unit = table_unit(file, given);
-    }
-    if (given != unit) {
-        tool_fail(tool, STATUS_INPUT, "-u %s: landmarks are in mm", unit_name);
-    }
-    TOOL_TRY(tool, table_read(file, dim, dim, &table, &error));
-    points->count = table.rows;
-    points->x = array_take(&table.values);
-    points->label = array_take(&table.label);
-    points->text = array_take(&table.text);
-    for (int64_t i = 0; i < points->count * dim; i++) {
-        points->x[i] *= unit;
-    }
-}
-
+/* The nodes of another stream. */
 static void read_nodes(const struct tool *tool, const char *file, int dim, struct points *points)
 {
     FREED_BY(stream_free) struct stream other = {0};
     struct error why;
-    int other_dim;
-    const double *x;
     const char *name;
     FREED_BY(descriptor_close) int descriptor = tool_open(tool, file, &name);
     enum status status = stream_read(&other, descriptor, name, &why);
     if (status != STATUS_OK) {
         tool_fail(tool, status, "%s (a table of coordinates needs -u)", why.text);
     }
-    TOOL_TRY(tool, fail_in(&error, stream_nodes(&other, &other_dim, &points->count, &x, &error), "%s", file));
-    if (other_dim != dim) {
-        tool_fail(tool, STATUS_INPUT, "%s: nodes.x: points in %dD, the field is in %dD", file, other_dim,
+    points_of_section(tool, &other, "nodes.x", points);
+    if (points->dim != dim) {
+        tool_fail(tool, STATUS_INPUT, "%s: nodes.x: points in %dD, the field is in %dD", file, points->dim,
                   dim);
     }
-    TOOL_TRY(tool, NEW_ARRAY(&points->x, points->count * dim, &error));
-    memcpy(points->x, x, (size_t)(points->count * dim) * sizeof *x);
+    points->what = file;
 }
 
 /* Leave out the points outside of the body, and note their number; or fail on the first one that is too far
  * outside. */
 static enum status drop_outside(const struct tool *tool, const struct cells *cells, const double *spacing,
-                                bool skip, const char *file, struct points *points, struct error *error)
+                                bool skip, const char *file, struct evaluated *points, struct error *error)
 {
     int dim = cells->dim;
     int64_t kept = 0;
-    NEW_SCRATCH(bool, outside, points->count, error);
-    RETURN_IF_ERROR(NEW_ARRAY(&points->row, points->count, error));
-    RETURN_IF_ERROR(
-        field_outside(cells, spacing, skip ? 0.0 : FIELD_MARGIN, points->count, points->x, outside, error));
-    for (int64_t i = 0; i < points->count; i++) {
+    NEW_SCRATCH(bool, outside, points->at.count, error);
+    RETURN_IF_ERROR(NEW_ARRAY(&points->row, points->at.count, error));
+    RETURN_IF_ERROR(field_outside(cells, spacing, skip ? 0.0 : FIELD_MARGIN, points->at.count, points->at.x,
+                                  outside, error));
+    for (int64_t i = 0; i < points->at.count; i++) {
         if (outside[i] && !skip) {
             return fail(error, STATUS_INPUT,
                         "%s: row %jd at %s: farther from the body than the spacing of its nodes: is the "
                         "unit right? --skip-outside leaves such points out",
-                        file, i, POINT_TEXT(dim, points->x + i * dim));
+                        file, i, POINT_TEXT(dim, points->at.x + i * dim));
         }
         if (!outside[i]) {
-            memmove(points->x + kept * dim, points->x + i * dim, (size_t)dim * sizeof *points->x);
+            memmove(points->at.x + kept * dim, points->at.x + i * dim, (size_t)dim * sizeof *points->at.x);
             points->row[kept++] = i;
         }
     }
-    if (kept == 0 && points->count > 0) {
+    if (kept == 0 && points->at.count > 0) {
         return fail(error, STATUS_INPUT, "%s: no point lies in the body: is the unit right?", file);
     }
-    if (kept < points->count) {
+    if (kept < points->at.count) {
         tool_note(tool, "%s: %jd of %jd points lie outside of the body: left out", file,
-                  (points->count - kept), points->count);
+                  (points->at.count - kept), points->at.count);
     }
-    points->count = kept;
+    points->at.count = kept;
     return STATUS_OK;
 }
 
@@ -177,7 +152,7 @@ static enum status drop_outside(const struct tool *tool, const struct cells *cel
  * which may be outside; the shape functions are those of the computed field, or chosen by options. */
 static enum status make_table(const struct tool *tool, const struct recorded *known,
                               const struct support_options *support, const struct stream *stream, bool skip,
-                              const char *file, struct points *points, struct error *error)
+                              const char *file, struct evaluated *points, struct error *error)
 {
     struct cells cells;
     const struct mls *shapes = NULL;
@@ -195,19 +170,8 @@ static enum status make_table(const struct tool *tool, const struct recorded *kn
     if (file != NULL) {
         RETURN_IF_ERROR(drop_outside(tool, &cells, spacing, skip, file, points, error));
     }
-    return field_table_build(support, shapes, &cells, radius, points->count, points->x,
+    return field_table_build(support, shapes, &cells, radius, points->at.count, points->at.x,
                              file != NULL ? file : "points.x", &points->table, error);
-}
-
-static enum status copy_points(const struct stream *stream, int dim, struct points *points,
-                               struct error *error)
-{
-    const struct section *x;
-    RETURN_IF_ERROR(stream_view(stream, "points.x", &x, error));
-    points->count = x->rows;
-    RETURN_IF_ERROR(NEW_ARRAY(&points->x, x->rows * dim, error));
-    memcpy(points->x, x->data, (size_t)(x->rows * dim) * sizeof(double));
-    return STATUS_OK;
 }
 
 /* Whether a section is a nodal field, not part of the discretisation. */
@@ -219,24 +183,24 @@ static bool is_field(const struct section *section, int64_t node_count)
     return section->type == TYPE_F8 && section->rows == node_count;
 }
 
-static void evaluate(const struct points *points, const struct section *field, double *values)
+static void evaluate(const struct evaluated *points, const struct section *field, double *values)
 {
-    field_evaluate(points->count, points->table.lists.ptr, points->table.lists.idx, points->table.phi,
+    field_evaluate(points->at.count, points->table.lists.ptr, points->table.lists.idx, points->table.phi,
                    field->cols, field->data, values);
 }
 
 static void put_values(const struct tool *tool, const struct stream *stream, const struct section *field,
-                       const struct points *points, struct stream *output)
+                       const struct evaluated *points, struct stream *output)
 {
     double *values;
     const struct section *from = solved_parameters(stream, &points->solved, field);
-    TOOL_TRY(tool, NEW_ARRAY(&values, points->count * field->cols, &error));
+    TOOL_TRY(tool, NEW_ARRAY(&values, points->at.count * field->cols, &error));
     evaluate(points, from, values);
-    tool_put(tool, output, field->name, TYPE_F8, points->count, field->cols, field->attributes, values);
+    tool_put(tool, output, field->name, TYPE_F8, points->at.count, field->cols, field->attributes, values);
 }
 
 static void put_all_fields(const struct tool *tool, const struct stream *stream, int64_t node_count,
-                           const struct points *points, struct stream *output)
+                           const struct evaluated *points, struct stream *output)
 {
     for (int64_t s = 0; s < stream->section_count; s++) {
         if (is_field(&stream->sections[s], node_count)) {
@@ -249,7 +213,7 @@ static void put_all_fields(const struct tool *tool, const struct stream *stream,
 }
 
 static void put_fields(const struct tool *tool, const struct stream *stream, int64_t node_count,
-                       const char *names, const struct points *points, struct stream *output)
+                       const char *names, const struct evaluated *points, struct stream *output)
 {
     SCRATCH char *list = tool_memory(tool, strdup(names));
     for (char *rest = list, *name; (name = strsep(&rest, ",")) != NULL;) {
@@ -269,23 +233,23 @@ static void put_fields(const struct tool *tool, const struct stream *stream, int
 }
 
 static void put_deformed(const struct tool *tool, const struct stream *stream, int dim, int64_t node_count,
-                         const struct points *points, struct stream *output)
+                         const struct evaluated *points, struct stream *output)
 {
     char attributes[64];
     const struct section *u;
     double *x;
     TOOL_TRY(tool, stream_field(stream, "u", dim, node_count, &u, &error));
-    TOOL_TRY(tool, NEW_ARRAY(&x, points->count * dim, &error));
+    TOOL_TRY(tool, NEW_ARRAY(&x, points->at.count * dim, &error));
     u = solved_parameters(stream, &points->solved, u);
     evaluate(points, u, x);
-    for (int64_t i = 0; i < points->count * dim; i++) {
-        x[i] += points->x[i];
+    for (int64_t i = 0; i < points->at.count * dim; i++) {
+        x[i] += points->at.x[i];
     }
-    tool_put(tool, output, "x.deformed", TYPE_F8, points->count, dim, vector_attributes(dim, "m", attributes),
-             x);
+    tool_put(tool, output, "x.deformed", TYPE_F8, points->at.count, dim,
+             vector_attributes(dim, "m", attributes), x);
 }
 
-static void find_points(const struct tool *tool, struct stream *stream, int dim, struct points *points)
+static void find_points(const struct tool *tool, struct stream *stream, int dim, struct evaluated *points)
 {
     const char *file = tool_value(tool, "points");
     struct support_options support = parse(tool, dim);
@@ -296,21 +260,21 @@ static void find_points(const struct tool *tool, struct stream *stream, int dim,
     if (file == NULL) {
         const struct section *radius = stream_find(stream, "support.radius");
         stage_fill(tool, stream, "ipoints");
-        TOOL_TRY(tool, copy_points(stream, dim, points, &error));
+        points_of_section(tool, stream, "points.x", &points->at);
         if (known.radius == NULL && radius != NULL) {
             TOOL_TRY(tool, stage_recorded(stream, "support", &known, &error));
         }
     } else if (tool_given(tool, "unit") || landmarks_named(file)) {
-        read_table(tool, file, tool_value(tool, "unit"), dim, points);
+        points_of_table(tool, file, dim, &points->at);
     } else {
-        read_nodes(tool, file, dim, points);
+        read_nodes(tool, file, dim, &points->at);
     }
     TOOL_TRY(tool, make_table(tool, &known, &support, stream, tool_given(tool, "skip-outside"), file, points,
                               &error));
 }
 
 /* Write the moved points, with the names that they have in their file. */
-static void write_landmarks(const struct tool *tool, int dim, const struct points *points,
+static void write_landmarks(const struct tool *tool, int dim, const struct evaluated *points,
                             const double *moved)
 {
     struct output output;
@@ -318,7 +282,7 @@ static void write_landmarks(const struct tool *tool, int dim, const struct point
         tool_fail(tool, STATUS_INPUT, "-o %s: landmarks are points in 3D", tool->output);
     }
     tool_print_to(tool, &output, tool->output);
-    landmarks_print(output.file, tool->output, points->count, moved, points->row, points->label);
+    landmarks_print(output.file, tool->output, points->at.count, moved, points->row, points->at.label);
     tool_printed(tool, &output);
 }
 
@@ -326,7 +290,7 @@ int main(int argc, char *argv[])
 {
     struct tool tool;
     FREED_BY(stream_free) struct stream stream = {0}, output = {0};
-    struct points points = {0};
+    struct evaluated points = {.row = NULL};
     int dim;
     int64_t node_count;
     const double *nodes;
@@ -338,8 +302,8 @@ int main(int argc, char *argv[])
     find_points(&tool, &stream, dim, &points);
     output.provenance = stream.provenance;
     stream.provenance = (struct names){0};
-    tool_put(&tool, &output, "nodes.x", TYPE_F8, points.count, dim, vector_attributes(dim, "m", attributes),
-             points.x);
+    tool_put(&tool, &output, "nodes.x", TYPE_F8, points.at.count, dim,
+             vector_attributes(dim, "m", attributes), points.at.x);
     if (tool_given(&tool, "field")) {
         put_fields(&tool, &stream, node_count, tool_value(&tool, "field"), &points, &output);
     } else {
@@ -352,11 +316,11 @@ int main(int argc, char *argv[])
         write_landmarks(&tool, dim, &points, stream_find(&output, "x.deformed")->data);
     } else {
         if (tool_given(&tool, "skip-outside")) {
-            tool_put(&tool, &output, "points.row", TYPE_I8, points.count, 1, "", array_take(&points.row));
+            tool_put(&tool, &output, "points.row", TYPE_I8, points.at.count, 1, "", array_take(&points.row));
         }
         tool_write(&tool, &output);
     }
     field_table_free(&points.table);
-    FREE_ALL(points.row, points.label, points.text);
+    FREE_ALL(points.row, points.at.label, points.at.text);
     return tool_end(&tool);
 }

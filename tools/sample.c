@@ -57,7 +57,8 @@ static const char usage[] =
     "  sample --tissue 3000,0.49 --tissue 9000,0.49 white.nii.gz tumour.nii.gz table.mts > stiffness.tsv\n";
 
 #include "images/images.h"
-#include "sample/sample_points.h"
+#include "points.h"
+#include "stage_options.h"
 #include "output.h"
 #include "images/tissue.h"
 #include "stages/views.h"
@@ -69,6 +70,13 @@ static const char usage[] =
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* Points, and the values of images there. */
+struct sampled {
+    struct points points;
+    int64_t cols;  /* values at a point */
+    double *value; /* points.count * cols */
+};
 
 /* The options. */
 struct request {
@@ -142,16 +150,16 @@ static bool are_good(const struct request *request, const double *values, size_t
 
 /* Sample one image at all points, into columns from `first` on. */
 static void sample_image(const struct tool *tool, const struct request *request, const struct image *image,
-                         const char *name, struct sample_points *rows, int64_t first)
+                         const char *name, struct sampled *rows, int64_t first)
 {
     double inverse[3][4];
     struct box box = box_of(3, 0, NULL);
     int64_t outside = 0, first_outside = -1;
     image_to_voxel(image, inverse);
-    for (int64_t p = 0; p < rows->count; p++) {
+    for (int64_t p = 0; p < rows->points.count; p++) {
         double place[3] = {0, 0, image->to_world[2][3]}, voxel[3];
         double *value = rows->value + p * rows->cols + first;
-        memcpy(place, rows->x + p * rows->dim, (size_t)rows->dim * sizeof *place);
+        memcpy(place, rows->points.x + p * rows->points.dim, (size_t)rows->points.dim * sizeof *place);
         image_map(&inverse[0][0], place, voxel);
         box_add(&box, 1, voxel);
         if (!image_sample(image, request->method, voxel, value) ||
@@ -162,10 +170,10 @@ static void sample_image(const struct tool *tool, const struct request *request,
             }
         }
     }
-    if (request->points == NULL && rows->count > 1 && box_side(&box) < 1) {
+    if (request->points == NULL && rows->points.count > 1 && box_side(&box) < 1) {
         tool_fail(tool, STATUS_INPUT,
-                  "%s: all points lie within %.2g of a voxel of %s: another space, or unit?", rows->what,
-                  box_side(&box), name);
+                  "%s: all points lie within %.2g of a voxel of %s: another space, or unit?",
+                  rows->points.what, box_side(&box), name);
     }
     if (outside == 0) {
         return;
@@ -175,11 +183,12 @@ static void sample_image(const struct tool *tool, const struct request *request,
                   "%s: row %jd at %s m, one of %jd of %jd: outside of %s, or not finite there: is the "
                   "unit right? "
                   "--outside V gives such points a value",
-                  rows->what, first_outside, POINT_TEXT(rows->dim, rows->x + first_outside * rows->dim),
-                  outside, rows->count, name);
+                  rows->points.what, first_outside,
+                  POINT_TEXT(rows->points.dim, rows->points.x + first_outside * rows->points.dim), outside,
+                  rows->points.count, name);
     }
     tool_note(tool, "%s: %jd of %jd points are outside of %s, or it is not finite there: %g taken",
-              rows->what, outside, rows->count, name, request->outside);
+              rows->points.what, outside, rows->points.count, name, request->outside);
 }
 
 static void check_probabilities(const struct tool *tool, const struct image *image, const char *name)
@@ -217,80 +226,82 @@ static void square_vectors(const struct tool *tool, const struct image_axes *axe
 }
 
 /* Replace the sampled a (x) a by their axes, 0 where there is none. */
-static void find_axes(const struct tool *tool, struct sample_points *rows)
+static void find_axes(const struct tool *tool, struct sampled *rows)
 {
     double *axes;
-    TOOL_TRY(tool, NEW_ARRAY(&axes, rows->count * rows->dim, &error));
-    for (int64_t p = 0; p < rows->count; p++) {
-        double *axis = axes + p * rows->dim;
-        if (!axis_principal(rows->dim, rows->value + p * rows->cols, axis)) {
-            memset(axis, 0, (size_t)rows->dim * sizeof *axis);
+    TOOL_TRY(tool, NEW_ARRAY(&axes, rows->points.count * rows->points.dim, &error));
+    for (int64_t p = 0; p < rows->points.count; p++) {
+        double *axis = axes + p * rows->points.dim;
+        if (!axis_principal(rows->points.dim, rows->value + p * rows->cols, axis)) {
+            memset(axis, 0, (size_t)rows->points.dim * sizeof *axis);
         }
     }
     free(rows->value);
     rows->value = axes;
-    rows->cols = rows->dim;
+    rows->cols = rows->points.dim;
 }
 
 /* Sample all images. The first one determines the number of values at a point. */
-static void sample_images(const struct tool *tool, const struct request *request, struct sample_points *rows)
+static void sample_images(const struct tool *tool, const struct request *request, struct sampled *rows)
 {
     for (int i = 0; i < request->image_count; i++) {
         FREED_BY(image_free) struct image image = {0};
         struct image_axes axes;
         tool_read_image(tool, tool->operands[i], &image);
-        image_to_body(tool, &image, rows->dim, &axes);
+        image_to_body(tool, &image, rows->points.dim, &axes);
         if (request->stiffness && image.components != 1) {
             tool_fail(tool, STATUS_INPUT, "%s: %zu values at a voxel: stiffness comes from one",
                       tool->operands[i], image.components);
         }
         if (request->axes) {
-            square_vectors(tool, &axes, rows->dim, &image, tool->operands[i]);
+            square_vectors(tool, &axes, rows->points.dim, &image, tool->operands[i]);
         }
         if (request->tissue.count > 0) {
             check_probabilities(tool, &image, tool->operands[i]);
         }
         if (i == 0) {
             rows->cols = request->stiffness ? request->image_count : (int64_t)image.components;
-            TOOL_TRY(tool, NEW_ARRAY(&rows->value, rows->count * rows->cols, &error));
+            TOOL_TRY(tool, NEW_ARRAY(&rows->value, rows->points.count * rows->cols, &error));
         }
         sample_image(tool, request, &image, tool->operands[i], rows, i);
     }
 }
 
-static void find_moduli(const struct tool *tool, const struct tissue *tissue, struct sample_points *rows)
+static void find_moduli(const struct tool *tool, const struct tissue *tissue, struct sampled *rows)
 {
     double(*moduli)[2];
     int64_t beyond = 0;
-    TOOL_TRY(tool, NEW_ARRAY(&moduli, rows->count, &error));
-    for (int64_t p = 0; p < rows->count; p++) {
+    TOOL_TRY(tool, NEW_ARRAY(&moduli, rows->points.count, &error));
+    for (int64_t p = 0; p < rows->points.count; p++) {
         if (!tissue_moduli(tissue, rows->value + p * rows->cols, moduli[p], &beyond)) {
             tool_fail(tool, STATUS_INPUT,
                       "%s: row %jd at %s m: no tissue has a probability above 0 there (--outside 1 gives "
                       "points outside "
                       "of the images the mean of all)",
-                      rows->what, p, POINT_TEXT(rows->dim, rows->x + p * rows->dim));
+                      rows->points.what, p,
+                      POINT_TEXT(rows->points.dim, rows->points.x + p * rows->points.dim));
         }
     }
     if (beyond > 0) {
         tool_note(tool, "%jd of %jd values lie beyond the table of --material: its first or last row taken",
-                  beyond, rows->count);
+                  beyond, rows->points.count);
     }
     free(rows->value);
     rows->value = *moduli;
     rows->cols = 2;
 }
 
-static void print_rows(FILE *file, const struct request *request, const struct sample_points *rows)
+static void print_rows(FILE *file, const struct request *request, const struct sampled *rows)
 {
-    fprintf(file, "# x y%s", rows->dim == 3 ? " z" : "");
+    fprintf(file, "# x y%s", rows->points.dim == 3 ? " z" : "");
     for (int64_t c = 0; c < rows->cols; c++) {
         fprintf(file, " %s", request->stiffness ? c == 0 ? "E" : "nu" : "value");
     }
     fprintf(file, "\n");
-    for (int64_t p = 0; p < rows->count; p++) {
-        for (int i = 0; i < rows->dim; i++) {
-            fprintf(file, "%s%.17g", i > 0 ? " " : "", rows->x[p * rows->dim + i] / request->unit);
+    for (int64_t p = 0; p < rows->points.count; p++) {
+        for (int i = 0; i < rows->points.dim; i++) {
+            fprintf(file, "%s%.17g", i > 0 ? " " : "",
+                    rows->points.x[p * rows->points.dim + i] / request->unit);
         }
         for (int64_t c = 0; c < rows->cols; c++) {
             fprintf(file, " %.17g", rows->value[p * rows->cols + c]);
@@ -304,7 +315,7 @@ int main(int argc, char *argv[])
     struct tool tool;
     FREED_BY(stream_free) struct stream stream = {0};
     struct request request;
-    struct sample_points rows;
+    struct sampled rows = {.cols = 0};
     struct output output;
     char attributes[64];
     tool_begin(&tool, usage, 1, OPTIONS_MOST_USES + 1, argc, argv);
@@ -317,10 +328,16 @@ int main(int argc, char *argv[])
                                          : " expected");
     }
     if (request.points != NULL) {
-        sample_points_table(&tool, request.points, request.unit, &rows);
+        points_of_table(&tool, request.points, 0, &rows.points);
     } else {
-        sample_points_section(&tool, tool.operands[request.image_count], request.at, request.region, &stream,
-                              &rows);
+        tool_read(&tool, tool.operands[request.image_count], &stream);
+        if (strcmp(request.at, "points.x") == 0) {
+            stage_fill(&tool, &stream, "ipoints");
+        }
+        points_of_section(&tool, &stream, request.at, &rows.points);
+    }
+    if (request.region != NULL) {
+        points_in_regions(&tool, &stream, request.region, &rows.points);
     }
     sample_images(&tool, &request, &rows);
     if (request.stiffness) {
@@ -330,9 +347,9 @@ int main(int argc, char *argv[])
         find_axes(&tool, &rows);
     }
     if (request.section != NULL) {
-        tool_put(&tool, &stream, request.section, TYPE_F8, rows.count, rows.cols,
+        tool_put(&tool, &stream, request.section, TYPE_F8, rows.points.count, rows.cols,
                  request.stiffness ? "cols=E,nu"
-                 : request.axes    ? vector_attributes(rows.dim, "1", attributes)
+                 : request.axes    ? vector_attributes(rows.points.dim, "1", attributes)
                                    : "",
                  array_take(&rows.value));
         tool_write(&tool, &stream);
@@ -341,7 +358,8 @@ int main(int argc, char *argv[])
         print_rows(output.file, &request, &rows);
         tool_printed(&tool, &output);
     }
-    FREE_ALL(rows.x, rows.value);
+    points_free(&rows.points);
+    free(rows.value);
     tissue_free(&request.tissue);
     return tool_end(&tool);
 }
