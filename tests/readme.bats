@@ -92,7 +92,7 @@ constants() {
 # Round-off, 1e-6 and below, is none of them, nor are mathematical constants and limits of formats.
 @test "constants: each real number that lib and tools name has a row with its place" {
     constants | sort -u > names
-    (cd "$top" && grep -nE '^static const double ' lib/*/*.c lib/*/*/*.c tools/{common,mtled,sample,tovtk,voxels,warp}/*.c tools/common/*/*.c) | sed -E 's/:[0-9]+:static const double/ /; s/;.*//' |
+    (cd "$top" && grep -nE '^static const double ' lib/*/*.c lib/*/*/*.c tools/{common,mtled,tovtk,voxels,warp}/*.c tools/common/*/*.c) | sed -E 's/:[0-9]+:static const double/ /; s/;.*//' |
         while read -r place rest; do
             tr , '\n' <<< "$rest" | sed -nE "s|^ *([a-z_0-9]+) = *-?([0-9.]+(e-?[0-9]+)?).*|\1 $place \2|p"
         done | awk '$3 > 1.5e-6 && $3 < 1e15 { print $1, $2 }' | grep -vE '^(pi|full_turn) ' | sort -u > code

@@ -265,6 +265,10 @@ static void find_points(const struct tool *tool, struct stream *stream, int dim,
             TOOL_TRY(tool, stage_recorded(stream, "support", &known, &error));
         }
     } else if (tool_given(tool, "unit") || landmarks_named(file)) {
+        double unit = tool_length_unit(tool, "unit", table_unit(file, 1));
+        if (unit != table_unit(file, unit)) {
+            tool_fail(tool, STATUS_INPUT, "-u %s: landmarks are in mm", tool_value(tool, "unit"));
+        }
         points_of_table(tool, file, dim, &points->at);
     } else {
         read_nodes(tool, file, dim, &points->at);

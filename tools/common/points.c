@@ -10,10 +10,7 @@
 void points_of_table(const struct tool *tool, const char *file, int dim, struct points *points)
 {
     FREED_BY(table_free) struct table table = {0};
-    double given = tool_length_unit(tool, "unit", 1), unit = table_unit(file, given);
-    if (tool_given(tool, "unit") && given != unit) {
-        tool_fail(tool, STATUS_INPUT, "-u %s: landmarks are in mm", tool_value(tool, "unit"));
-    }
+    double unit = table_unit(file, tool_length_unit(tool, "unit", 1));
     TOOL_TRY(tool, table_read(file, dim > 0 ? dim : 2, dim > 0 ? dim : 3, &table, &error));
     *points = (struct points){.what = file, .dim = (int)table.cols, .count = table.rows};
     points->x = array_take(&table.values);
