@@ -91,7 +91,12 @@ struct request {
 static void parse(const struct tool *tool, struct request *request)
 {
     const char *tissue[OPTIONS_MOST_USES];
-    int tissue_count = tool_values(tool, "tissue", tissue);
+    int tissue_count = 0;
+    for (int i = 0; i < tool->options.use_count; i++) {
+        if (tool->options.use[i].option->repeats) { /* --tissue alone does */
+            tissue[tissue_count++] = tool->options.use[i].value;
+        }
+    }
     *request = (struct request){.method = tool_image_method(tool),
                                 .at = tool_value(tool, "at"),
                                 .region = tool_value(tool, "region"),

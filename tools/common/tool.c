@@ -367,18 +367,6 @@ const char *tool_first_given(const struct tool *tool, const char *const options[
     return NULL;
 }
 
-int tool_values(const struct tool *tool, const char *option, const char *values[OPTIONS_MOST_USES])
-{
-    const struct option *found = options_find(&tool->options, option);
-    int count = 0;
-    for (int i = 0; i < tool->options.use_count; i++) {
-        if (tool->options.use[i].option == found) {
-            values[count++] = tool->options.use[i].value;
-        }
-    }
-    return count;
-}
-
 /* Exit with the message if the first option was given, and the other one was or was not. */
 static void refuse_pair(const struct tool *tool, const char *option, const char *other, bool both,
                         const char *between)

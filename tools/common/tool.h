@@ -46,9 +46,6 @@ void tool_whole_numbers(const struct tool *tool, const char *option, double leas
 /* The name of the first option given among a list that ends with NULL; NULL: none was. */
 const char *tool_first_given(const struct tool *tool, const char *const options[]);
 
-/* The values of a repeatable option, in the order of the command line; returns their number. */
-int tool_values(const struct tool *tool, const char *option, const char *values[OPTIONS_MOST_USES]);
-
 /* Exit if both options were given; exit if the first one was given without the second. */
 void tool_excludes(const struct tool *tool, const char *option, const char *other);
 void tool_requires(const struct tool *tool, const char *option, const char *other);

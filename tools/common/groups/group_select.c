@@ -12,16 +12,7 @@ static const char *const joints[JOINTS] = {"or", "and", "without"};
 static void combine(enum joint joint, int64_t count, const bool *term, bool *chosen)
 {
     for (int64_t i = 0; i < count; i++) {
-        switch (joint) {
-        case JOIN_OR:
-            chosen[i] = chosen[i] || term[i];
-            break;
-        case JOIN_AND:
-            chosen[i] = chosen[i] && term[i];
-            break;
-        default:
-            chosen[i] = chosen[i] && !term[i];
-        }
+        chosen[i] = joint == JOIN_OR ? chosen[i] || term[i] : chosen[i] && term[i] == (joint == JOIN_AND);
     }
 }
 
