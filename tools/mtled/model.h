@@ -65,10 +65,6 @@ MUST_CHECK enum status model_nodes(struct model *model, const struct scene_label
                                    const struct name_list *names, const int32_t **nodes, int64_t *count,
                                    struct error *error);
 
-/* The facets of the body that may touch each other by a section. */
-MUST_CHECK enum status model_between(struct model *model, const struct scene_contact *section,
-                                     struct contact_condition *contact, struct error *error);
-
 /* u, v[node_count * dim]: the initial state given by the scene's [initial], as parameters, m and m/s. */
 MUST_CHECK enum status model_initial(const struct model *model, double *u, double *v, struct error *error);
 
