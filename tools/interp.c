@@ -67,7 +67,7 @@ struct evaluated {
 };
 
 /* Options that need points of a file. */
-static const char *const choose_supports[] = {"factor", "radius", "basis", "weight", "mu", "mu-unit", NULL};
+static const char *const choose_supports[] = {RADIUS_OPTIONS, MLS_OPTIONS, NULL};
 
 static bool writes_landmarks(const struct tool *tool)
 {

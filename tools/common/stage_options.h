@@ -7,6 +7,10 @@
 #include "stages/stages.h"
 #include "tool.h"
 
+/* The names of these options, for tool_first_given. */
+#define MLS_OPTIONS "basis", "weight", "mu", "mu-unit"
+#define RADIUS_OPTIONS "factor", "radius"
+
 /* Apply the options that were given; exits for invalid values. */
 void mls_parse(const struct tool *tool, struct mls *mls);
 
