@@ -11,6 +11,8 @@ nifti.py volumes FILE          label and ml
 nifti.py change IN OUT WHAT    OUT: IN as int16 scaled, as RGB, with a NaN, a middle slice, elsewhere
 nifti.py segments IN OUT LAYERS NAME...   labels as 3D Slicer writes a segmentation; in 2 layers the first segment overlaps the second
 nifti.py value FILE I J K ...   the values of voxels, a line each
+nifti.py raw < LINES           1.nii, 2.nii, ...: 3 x 2 x 2 voxels, as each line says: type=, version=2, order=> (bytes), first= (value), more=
+                               (bytes), and FIELD= or FIELD.INDEX= of the header, whatever sense that makes; 1.txt: the values
 """
 
 import gzip
@@ -234,6 +236,29 @@ def value(path, *voxels):
         print(*["%.9g" % v for v in np.atleast_1d(values[tuple(map(int, voxels[voxel : voxel + 3]))]).ravel()])
 
 
+def raw():
+    for line, text in enumerate(sys.stdin, 1):
+        given = dict(word.split("=") for word in text.split())
+        kind = nib.Nifti2Header if given.pop("version", 1) == "2" else nib.Nifti1Header
+        header, dtype = kind(endianness=given.pop("order", "<")), np.dtype(given.pop("type", "int16"))
+        ends = np.finfo(dtype) if dtype.kind == "f" else np.iinfo(dtype)
+        least, most = (ends.tiny, ends.max) if dtype.kind == "f" else (max(ends.min, -(2**53)), min(ends.max, 2**53))
+        values = np.array([least, most, 0, 1, 2, 100, 7, 3, 11, 5, 120, 9], dtype)
+        values[0] = dtype.type(given.pop("first", values[0]))
+        more = int(given.pop("more", 0))
+        header.set_data_dtype(dtype)
+        header.set_data_shape((3, 2, 2))
+        header["xyzt_units"], header["vox_offset"] = 2, header.single_vox_offset
+        for field, number in given.items():
+            name, _, index = field.partition(".")
+            number = number if header[name].dtype.kind == "S" else int(number) if number.lstrip("-").isdigit() else float(number)
+            header[name] = number if index == "" else [*header[name][: int(index)], number, *header[name][int(index) + 1 :]]
+        data = header.binaryblock + bytes(4) + values.astype(header.get_data_dtype() if "datatype" not in given else dtype).tobytes()
+        with open(f"{line}.nii", "wb") as file:
+            file.write(data[: len(data) + more] if more < 0 else data + bytes(more))
+        np.savetxt(f"{line}.txt", values.astype(float), "%.17g")
+
+
 if __name__ == "__main__":
     {"smooth": smooth, "ball": ball, "step": step, "same": same, "moved": moved, "fields": fields, "volumes": volumes,
-     "change": change, "segments": segments, "value": value}[sys.argv[1]](*sys.argv[2:])
+     "change": change, "segments": segments, "value": value, "raw": raw}[sys.argv[1]](*sys.argv[2:])
