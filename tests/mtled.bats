@@ -174,6 +174,15 @@ near() {
     rows u.frame.0 u.dat | awk '$1 != 0 || $2 != 0 { exit 1 } END { exit NR != 36 }'
 }
 
+@test "a body that is moved at constant speed: the begin is a blow, whose work counts, and there is no jerk at the end" {
+    cloud -d 2 -k regular -n 5 --box 0,0.1,0,0.1 > even.mts
+    { block dynamic | sed 's/^nu = .*/nu = 0.49/'; printf '[displacement all]\nfacets = *\ncomponents = 0.01, free\ncurve = linear\n'
+        printf '[output]\nenergy = yes\n[solver]\nend_time = 0.25\n'; } > moved.scene
+    mtled moved.scene even.mts > u.dat 2> note
+    rows energy u.dat | awk 'NR == 1 { blow = $5 } { bad += !($7 ^ 2 < 1e-6); work = $5 } END { exit bad || !(blow > 0 && work > blow) }'
+    paste -d ' ' <(rows nodes.x u.dat) <(rows u u.dat) | awk '$1 == 0 { bad += !(($3 - 0.01) ^ 2 < 0.0005 ^ 2); n++ } END { exit bad || n != 5 }'
+}
+
 @test "an initial state: thrown, a body moves on as it was; rows that are not the nodes are refused" {
     { swinging_block | sed '/gravity/d; /^\[displacement/,/^$/d'; printf '[initial]\ntable = begin.tsv\nunit = mm\n'; } > thrown.scene
     rows nodes.x <(mts text square.mts) | awk '{ print 1e3 * $1, 1e3 * $2, 2, 3, 40, -20 }' > begin.tsv

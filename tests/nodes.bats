@@ -129,6 +129,9 @@ volumes() {
     grep -q "nodes: 4 nodes, 2 cells, box 0 0 to 1 1 m, area 1 m2, 1 connected body" said
     grep -q "nodes: quality of the cells: least 0.83, median 0.83" said
     grep -q "nodes: cell 0: quality 0.83 at (0.666667, 0.333333) m" said
+    # the corner of a cube: V = 1/6, surface (3 + sqrt 3) / 2, R = sqrt 3 / 2; 3 r / R is sqrt 3 - 1
+    printf '%s\n' '*NODE' 1,0,0,0 2,1,0,0 3,0,1,0 4,0,0,1 '*ELEMENT, TYPE=C3D4' 1,1,2,3,4 | nodes -u m -v 2> said > /dev/null
+    grep -q "nodes: quality of the cells: least 0.73, median 0.73" said
 }
 
 @test "a plate of one cell is reported, one of three cells and a cube are not" {

@@ -64,6 +64,16 @@ report() {
     [[ "$(report nodes half)" == "36, "* ]]
 }
 
+@test "sides end at sharp turns, and at a node that two bodies share" {
+    { echo '# mts 1' # two squares that touch in a node, and a third one apart
+        section 'nodes.x f8 11 2 enc=text' '0 0' '1 0' '1 1' '0 1' '2 1' '2 2' '1 2' '5 0' '7 0' '7 2' '5 2'
+        section 'cells i4 6 3 enc=text' '0 1 2' '0 2 3' '2 4 5' '2 5 6' '7 8 9' '7 9 10'
+        echo '# end 2'; } > islands.mts
+    for sides in 180:3 90:3 89:12; do
+        refused 2 "there are ${sides#*:}, counted from 1" tag -f "a=side:13,${sides%:*}" islands.mts
+    done
+}
+
 @test "near the points and along the surface of a file" {
     bare_block
     echo '0 0 200' > points.tsv

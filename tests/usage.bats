@@ -28,6 +28,25 @@ setup() {
     [ "$(grep -m 1 '^## ' "$top/CHANGELOG.md" | cut -d ' ' -f 2)" = "$version" ]
 }
 
+@test "options: letters together, values attached, -- before operands; twice, with or without a value where it must not: refused" {
+    cloud -d 2 -k regular -n 4 --box 0,1,0,1 > -odd
+    support -vk2 --basis=mls1 -- -odd 2> note | mts print facepoint.idx > together
+    support --verbose --factor 2 -b mls1 ./-odd 2> note | mts print facepoint.idx | cmp - together
+    while IFS='|' read -r arguments message; do
+        refused 2 "$message" support $arguments ./-odd < /dev/null
+    done << 'END'
+-k 1 --factor 2|option --factor given twice
+-vv|option -v given twice
+--verbose=1|option --verbose=1 takes no value
+-vz|unknown option -z in -vz (see -h)
+--fact 1|unknown option --fact (see -h)
+--operand 1|unknown option --operand (see -h)
+END
+    for last in -k --factor; do refused 2 "option $last lacks its value" support ./-odd $last; done
+    run -2 --separate-stderr support ./-odd -- -k
+    [[ $stderr == *"-k"* && $stderr != *lacks* ]]
+}
+
 @test "every option of the usage line is explained, and every explained option is in the usage line" {
     for tool in "${tools[@]}"; do
         "$tool" -h > text
