@@ -16,11 +16,8 @@ static void build(struct cube *cube, int dim, double poisson_ratio, bool penalis
 {
     FREED_BY(stiffness_rows_free) struct stiffness_rows rows = {0};
     FREED_BY(stiffness_row_free) struct stiffness_row row = {0};
-    struct lattice_options options = lattice_defaults(dim, dim == 2 ? 9 : 5);
-    options.jitter = 0.2;
-    options.poisson_ratio = poisson_ratio;
     *cube = (struct cube){0};
-    lattice_build(&cube->l, &options);
+    lattice_build(&cube->l, dim, dim == 2 ? 9 : 5, 1, 0.2, poisson_ratio);
     struct solid_system *system = &cube->l.system;
     int64_t n = cube->n = system->node_count, size = cube->size = n * dim;
     if (penalised) {

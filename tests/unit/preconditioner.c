@@ -27,23 +27,32 @@ static void measure(struct strained *s, bool coarse)
     (void)system_residual(&s->l.system, s->u, s->residual);
 }
 
+/* The displacement of the first side is 0. */
+static void clamp(struct lattice *l)
+{
+    FREED_BY(boundary_averages_free) struct boundary_averages averages = lattice_averages(l, 0);
+    ARRAY(l->system.curves, 1);
+    ARRAY(l->system.factor, 1);
+    l->system.curves[0] = curve_of_kind(CURVE_SMOOTH);
+    l->system.curve_count = 1;
+    for (int64_t i = 0; i < averages.count * l->cloud.dim; i++) {
+        int64_t a = i % averages.count, at = averages.ptr[a], axis = i / averages.count;
+        double direction[3] = {axis == 0, axis == 1, axis == 2};
+        GOOD(constraint_rows_add(&l->system.rows, averages.ptr[a + 1] - at, averages.idx + at,
+                                 averages.phi + at, direction, 0.0, 0, 0, averages.node[a], &error));
+    }
+}
+
 static void strain_bar_of(struct strained *s, int dim, double poisson_ratio, double strain, bool clamped,
                           bool coarse)
 {
-    struct lattice_options options = lattice_defaults(dim, dim == 2 ? 9 : 5);
-    options.poisson_ratio = poisson_ratio;
-    options.count[0] *= 4;
-    options.size[0] *= 4.0;
-    options.jitter = 0.1;
-    lattice_build(&s->l, &options);
+    lattice_build(&s->l, dim, dim == 2 ? 9 : 5, 4, 0.1, poisson_ratio);
     body_limit_bulk(&s->l.system.body, 50.0);
-    int32_t curve = lattice_curve(&s->l, curve_of_kind(CURVE_SMOOTH));
     s->size = s->l.system.node_count * dim;
     s->u = lattice_vector(&s->l);
     s->residual = lattice_vector(&s->l);
-    for (int a = 0; clamped && a < dim; a++) {
-        double direction[3] = {a == 0, a == 1, a == 2};
-        lattice_prescribe(&s->l, 1u << 0, direction, NULL, NULL, curve);
+    if (clamped) {
+        clamp(&s->l);
     }
     for (int64_t i = 0; i < s->size; i++) {
         s->u[i] = (i % dim == 0 ? strain : -strain / (dim - 1)) * s->l.system.X[i];
@@ -259,7 +268,7 @@ static void press_bar(struct pressed *p)
     struct strained *s = &p->s;
     strain_bar(s, 2, -0.05, false, true);
     preconditioner_free(&s->preconditioner);
-    p->averages = lattice_averages(&s->l, 1u << 3);
+    p->averages = lattice_averages(&s->l, 3);
     GOOD(rigid_build(2, 1, corners, false, &plate, &error));
     GOOD(contact_build(&p->averages, NULL, s->l.system.X, 2, &plate, 1e6, &p->contact, &error));
     s->l.system.contacts = &p->contact;
