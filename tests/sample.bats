@@ -27,7 +27,7 @@ exact='{ e = 100 + 50 * sin(300 * $1) * cos(200 * $2 + 1) + 30 * sin(250 * $3) }
         "-r nowhere scan.nii.gz cube.mts" "--material missing scan.nii.gz cube.mts" "--tissue 3000 scan.nii.gz cube.mts" \
         "--tissue 3000,0.5 scan.nii.gz cube.mts" "--tissue 3000,.4 --material points.tsv scan.nii.gz cube.mts" \
         "--tissue 3000,.4 --tissue 1000,.4 scan.nii.gz" "missing.nii cube.mts" "cube.mts cube.mts" "scan.nii.gz scan.nii.gz" \
-        "--section T -u mm scan.nii.gz cube.mts" "scan.nii.gz square.mts"; do
+        "--section T -u mm scan.nii.gz cube.mts" "--section no/name scan.nii.gz cube.mts" "--section end scan.nii.gz cube.mts" "scan.nii.gz square.mts"; do
         run -2 --separate-stderr sample $arguments < /dev/null
         stderr=$(grep -av "ran with defaults" <<< "$stderr")
         [[ "$stderr" == "sample: "* && $(wc -l <<< "$stderr") -eq 1 ]] || { echo "$arguments: $stderr"; false; }
