@@ -3,8 +3,13 @@
 #include "law_fixture.h"
 #include "unit.h"
 
-#include "solid/material/ellipticity.h"
 #include "base/vector.h"
+#include "io/scene/scene.h"
+#include "solid/material/ellipticity.h"
+
+#include <stdio.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
 static struct material make(const char *law)
 {
@@ -12,11 +17,15 @@ static struct material make(const char *law)
 }
 
 enum { MATERIALS = SAMPLE_LAWS };
-static void make_all(struct material all[MATERIALS])
+static struct material all[MATERIALS];
+
+static int make_all(void **state)
 {
+    (void)state;
     for (int i = 0; i < MATERIALS; i++) {
         all[i] = sample_material(i, 3000.0, 0.49);
     }
+    return 0;
 }
 
 static double energy(const struct material *material, const double F[9])
@@ -87,8 +96,6 @@ static void take_state(int round, struct random *random, double F[9])
 TEST(stress_is_gradient)
 {
     struct random random = {2};
-    struct material all[MATERIALS];
-    make_all(all);
     for (int m = 0; m < MATERIALS; m++) {
         for (int round = 0; round < 50; round++) {
             double F[9], P[9], h = 1e-5, scale = 1.0;
@@ -113,8 +120,6 @@ TEST(stress_is_gradient)
 
 TEST(pressure_is_derivative)
 {
-    struct material all[MATERIALS];
-    make_all(all);
     for (int m = 0; m < MATERIALS; m++) {
         for (double J = 0.2; J < 3.0; J += 0.1) {
             double h = 1e-6, difference = material_volume_energy(&all[m], J + h) -
@@ -133,8 +138,6 @@ TEST(pressure_is_derivative)
 TEST(rotations)
 {
     struct random random = {3};
-    struct material all[MATERIALS];
-    make_all(all);
     for (int m = 0; m < MATERIALS; m++) {
         for (int round = 0; round < 50; round++) {
             double F[9], Q[9], QF[9], FQ[9], P[9], turned[9], expected[9], fibre[6] = {0.0};
@@ -173,8 +176,6 @@ TEST(rotations)
  * be stretched. */
 TEST(mean_shear_modulus)
 {
-    struct material all[MATERIALS];
-    make_all(all);
     for (int m = 0; m < MATERIALS; m++) {
         double sum = 0.0, a[3] = {0.8, 0.6, 0.0};
         for (int k = 0; k < 5; k++) {
@@ -205,20 +206,19 @@ TEST(mean_shear_modulus)
 TEST(small_strain)
 {
     struct random random = {4};
-    struct material all[MATERIALS];
     static const double ratios[] = {-0.2, 0.0, 0.3, 0.49, 0.499};
-    make_all(all);
     for (int r = 0; r < 5; r++) {
         double mu = 3000.0 / 2.0 / (1.0 + ratios[r]);
         double lambda = 3000.0 * ratios[r] / (1.0 + ratios[r]) / (1.0 - 2.0 * ratios[r]);
         for (int m = 0; m < MATERIALS && all[m].fibre == NULL; m++) {
             double F[9], P[9], strain = 1e-7;
-            material_set_moduli(&all[m], 3000.0, ratios[r]);
-            NEAR_TO(material_wave_modulus(&all[m]), lambda + 2.0 * mu, 1e-8 * (lambda + 2.0 * mu));
+            struct material law = all[m];
+            material_set_moduli(&law, 3000.0, ratios[r]);
+            NEAR_TO(material_wave_modulus(&law), lambda + 2.0 * mu, 1e-8 * (lambda + 2.0 * mu));
             for (int i = 0; i < 9; i++) {
                 F[i] = (i % 4 == 0) + strain * uniform(&random, -1.0, 1.0);
             }
-            stress(&all[m], F, P);
+            stress(&law, F, P);
             double trace = F[0] + F[4] + F[8] - 3.0;
             for (int i = 0; i < 9; i++) {
                 double e = 0.5 * (F[i] + F[i % 3 * 3 + i / 3]) - (i % 4 == 0);
@@ -368,8 +368,6 @@ TEST(principal_stretches)
 /* A point turned inside out has no energy. */
 TEST(inverted)
 {
-    struct material all[MATERIALS];
-    make_all(all);
     for (int m = 0; m < MATERIALS; m++) {
         assert_true(isnan(material_isochoric_energy(&all[m], (double[]){-0.1, 0, 0, 0, 1, 0, 0, 0, 1})));
         assert_true(isnan(material_isochoric_energy(&all[m], (double[]){0, 0, 0, 0, 1, 0, 0, 0, 1})));
@@ -392,4 +390,36 @@ TEST(ellipticity)
     }
 }
 
-RUN_TESTS(NULL, NULL)
+/* The moduli of laws by the keys of a scene: the parameters of each, and the volume by each of its keys. */
+TEST(moduli_of_scenes)
+{
+    static const struct {
+        const char *keys;
+        double shear, bulk, parameter;
+    } cases[] = {
+        {"E = 3000\nkappa = 50000\n", 3000 / 2.98, 50000, 0},
+        {"mu = 3\nnu = 0.25\n", 3, 5, 0},
+        {"model = st-venant-kirchhoff\nmu = 3\nD = 0.5\n", 3, 4, 0},
+        {"model = mooney-rivlin\nc1 = 2\nc2 = 3\nkappa = 7\n", 10, 7, 1.5},
+        {"model = mooney-rivlin\nratio = 3\nE = 9\nnu = 0\n", 4.5, 3, 3},
+        {"model = ogden\nmu = 1, 2, 5\nalpha = 2, -3, .5\nkappa = 7\n", 8, 7, .125},
+        {"model = yeoh\nc1 = 2\nc3 = 1\nkappa = 7\n", 4, 7, .5},
+        {"model = trans-iso\nc1 = 1\nc3 = 5\nc4 = 6\nfibre = 3, 4\nkappa = 7\n", 4, 7, .25},
+        {"model = guccione\nC = 2\nbf = 8\nbt = 2\nbfs = 4\nfibre = 1, 0\nkappa = 7\n", 3.6, 7, 2 / 3.6},
+        {"model = holzapfel-gasser-ogden\nc = 1\nk1 = 15\nk2 = 2\nfibre = 1, 0\nkappa = 7\n", 9, 7, 1. / 9}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        FREED_BY(scene_free) struct scene scene = {0};
+        char path[32];
+        int file = memfd_create("scene", 0);
+        snprintf(path, sizeof path, "/proc/self/fd/%d", file);
+        assert_true(dprintf(file, "[scene]\ndim = 2\nanalysis = quasi-static\n[material m]\nregion = r\n%s",
+                            cases[i].keys) > 0);
+        GOOD(scene_read(path, &scene, &error));
+        close(file);
+        NEAR_TO(scene.materials[0].material.shear_modulus, cases[i].shear, 1e-9);
+        NEAR_TO(scene.materials[0].material.bulk_modulus, cases[i].bulk, 1e-9);
+        NEAR_TO(scene.materials[0].parameters[0], cases[i].parameter, 1e-15);
+    }
+}
+
+RUN_TESTS(make_all, NULL)
