@@ -5,16 +5,17 @@
 #include "label_cells_fixture.h"
 
 /* The volume of each label within a share of that of its voxels. */
-static void check_volumes(const struct labels *labels, const struct label_shape *shape,
-                          const struct label_cells *mesh, double tolerance)
+static void check_volumes(const struct labelled *made, double tolerance)
 {
     double wanted[64] = {0}, found[64] = {0};
-    struct cells cells = label_cells_view(mesh);
+    const struct labels *labels = &made->labels;
+    const double *voxel = made->shape.voxel;
+    struct cells cells = label_cells_view(&made->mesh);
     for (int64_t v = 0; v < labels->size[0] * labels->size[1] * labels->size[2]; v++) {
-        wanted[labels->label[v]] += shape->voxel[0] * shape->voxel[1] * shape->voxel[2] * 1e-9;
+        wanted[labels->label[v]] += voxel[0] * voxel[1] * voxel[2] * 1e-9;
     }
     for (int64_t c = 0; c < cells.count; c++) {
-        found[mesh->label[c]] += cell_volume(&cells, c);
+        found[made->mesh.label[c]] += cell_volume(&cells, c);
     }
     for (int l = 1; l < labels->count; l++) {
         assert_true(fabs(found[l] - wanted[l]) <= tolerance * wanted[l]);
@@ -42,8 +43,10 @@ static bool changes_within(const struct labels *labels, const double x[3], doubl
 
 /* How many nodes of facets, and of faces between two labels, are farther than .6 voxels from where the label
  * changes. */
-static int64_t count_astray(const struct labels *labels, const struct label_cells *mesh)
+static int64_t count_astray(const struct labelled *made)
 {
+    const struct labels *labels = &made->labels;
+    const struct label_cells *mesh = &made->mesh;
     struct cells cells = label_cells_view(mesh);
     FREED_BY(faces_free) struct faces faces = {0};
     int64_t count = 0;
@@ -69,13 +72,10 @@ TEST(smooth_shapes)
     } cases[] = {{"sphere", 3}, {"sphere", 6},     {"sphere", 12}, {"torus", 4}, {"two", 5},
                  {"four", 5},   {"four", 0.8 * 5}, {"thin", 2},    {"layer", 2}, {"layer", 1.5}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        struct label_shape shape;
-        struct labels labels;
-        FREED_BY(label_cells_free)
-        struct label_cells mesh = make_of_shape(cases[i].name, 1, cases[i].spacing, &shape, &labels);
-        check_volumes(&labels, &shape, &mesh, 0.01);
-        assert_int_equal(count_astray(&labels, &mesh), 0);
-        free(shape.label);
+        FREED_BY(labelled_free)
+        struct labelled made = mesh_of_shape(cases[i].name, 1, 1e-3 * cases[i].spacing);
+        check_volumes(&made, 0.01);
+        assert_int_equal(count_astray(&made), 0);
     }
 }
 
@@ -84,14 +84,10 @@ TEST(random_blobs)
 {
     for (uint64_t seed = 1; seed <= 20; seed++) {
         for (int h = 3; h <= 5; h += 2) {
-            struct label_shape shape;
-            struct labels labels;
-            FREED_BY(label_cells_free)
-            struct label_cells mesh = make_of_shape("blobs", seed, h, &shape, &labels);
-            check_volumes(&labels, &shape, &mesh, 0.01);
-            assert_int_equal(count_astray(&labels, &mesh), 0);
-            assert_int_equal(mesh.astray, 0);
-            free(shape.label);
+            FREED_BY(labelled_free) struct labelled made = mesh_of_shape("blobs", seed, 1e-3 * h);
+            check_volumes(&made, 0.01);
+            assert_int_equal(count_astray(&made), 0);
+            assert_int_equal(made.mesh.astray, 0);
         }
     }
 }
@@ -101,26 +97,22 @@ TEST(five_labels_at_a_node)
 {
     int most = 0;
     for (int h = 3; h <= 6; h++) {
-        struct label_shape shape;
-        assert_true(label_shape_make("sphere", 1, millimetre, &shape));
-        for (int64_t v = 0; v < shape.size[0] * shape.size[1] * shape.size[2]; v++) {
-            int64_t i = v % shape.size[0], j = v / shape.size[0] % shape.size[1];
-            if (shape.label[v] != 0) {
-                shape.label[v] = (uint16_t)(1 + (2 * i > shape.size[0]) + 2 * (2 * j > shape.size[1]));
+        FREED_BY(labelled_free) struct labelled made = label("sphere", 1);
+        const struct label_shape *shape = &made.shape;
+        for (int64_t v = 0; v < shape->size[0] * shape->size[1] * shape->size[2]; v++) {
+            int64_t i = v % shape->size[0], j = v / shape->size[0] % shape->size[1];
+            if (shape->label[v] != 0) {
+                shape->label[v] = (uint16_t)(1 + (2 * i > shape->size[0]) + 2 * (2 * j > shape->size[1]));
             }
         }
-        struct labels labels = labels_of(&shape);
-        labels.count = 5;
-        struct label_cells_options options = {.spacing = 1e-3 * h, .keep = all_kept};
-        FREED_BY(label_cells_free) struct label_cells mesh = make(&labels, &options);
-        check_cells(&mesh);
-        assert_int_equal(count_astray(&labels, &mesh), 0);
+        made.labels.count = 5;
+        mesh_of(&made, (struct label_cells_options){.spacing = 1e-3 * h});
+        assert_int_equal(count_astray(&made), 0);
         FREED_BY(star_free) struct label_cells_star star = {0};
-        GOOD(star_make(&mesh, NULL, &star, &error));
-        for (int64_t n = 0; n < mesh.node_count; n++) {
+        GOOD(star_make(&made.mesh, NULL, &star, &error));
+        for (int64_t n = 0; n < made.mesh.node_count; n++) {
             most = star.labels[n] > most ? star.labels[n] : most;
         }
-        free(shape.label);
     }
     assert_int_equal(most, 5);
 }
@@ -148,41 +140,24 @@ static double longest_edge(const struct label_cells *mesh, int32_t label, bool a
 
 TEST(finer_at_interfaces)
 {
-    struct label_shape shape;
     bool fine[64] = {false, false, true};
-    assert_true(label_shape_make("sphere", 1, millimetre, &shape));
-    struct labels labels = labels_of(&shape);
-    struct label_cells_options options = {.spacing = 6e-3, .finest = 1.5e-3, .keep = all_kept};
-    struct label_cells mesh = make(&labels, &options);
-    check_cells(&mesh);
-    check_volumes(&labels, &shape, &mesh, 1e-3);
-    assert_int_equal(count_astray(&labels, &mesh), 0);
-    assert_true(longest_edge(&mesh, 1, true) < 1.6 * 1.5e-3);
-    assert_true(longest_edge(&mesh, 1, false) > 5.9e-3);
-    label_cells_free(&mesh);
-    free(shape.label);
+    struct label_cells_options options = {.spacing = 6e-3, .finest = 1.5e-3};
+    FREED_BY(labelled_free) struct labelled sphere = label("sphere", 1), thin = label("thin", 1);
+    mesh_of(&sphere, options);
+    check_volumes(&sphere, 1e-3);
+    assert_int_equal(count_astray(&sphere), 0);
+    assert_true(longest_edge(&sphere.mesh, 1, true) < 1.6 * 1.5e-3);
+    assert_true(longest_edge(&sphere.mesh, 1, false) > 5.9e-3);
 
     /* At a thin layer only: it is kept, while the outside is coarse. */
-    assert_true(label_shape_make("thin", 1, millimetre, &shape));
-    labels = labels_of(&shape);
-    options = (struct label_cells_options){.spacing = 6e-3, .finest = 1.5e-3, .fine = fine, .keep = all_kept};
-    mesh = make(&labels, &options);
-    check_cells(&mesh);
-    check_volumes(&labels, &shape, &mesh, 0.01);
-    assert_int_equal(count_astray(&labels, &mesh), 0);
-    assert_true(longest_edge(&mesh, 1, true) > 5.9e-3);
-    label_cells_free(&mesh);
-    free(shape.label);
-
+    options.fine = fine;
+    mesh_of(&thin, options);
+    check_volumes(&thin, 0.01);
+    assert_int_equal(count_astray(&thin), 0);
+    assert_true(longest_edge(&thin.mesh, 1, true) > 5.9e-3);
     for (uint64_t seed = 1; seed <= 10; seed++) {
-        assert_true(label_shape_make("blobs", seed, millimetre, &shape));
-        labels = labels_of(&shape);
-        options =
-            (struct label_cells_options){.spacing = 6e-3, .finest = 1.5e-3, .fine = fine, .keep = all_kept};
-        mesh = make(&labels, &options);
-        check_cells(&mesh);
-        label_cells_free(&mesh);
-        free(shape.label);
+        FREED_BY(labelled_free) struct labelled blobs = label("blobs", seed);
+        mesh_of(&blobs, options);
     }
 }
 
@@ -209,24 +184,20 @@ static void sized_cube(double half, double least, struct sized_cube *cube)
 
 TEST(by_sizes)
 {
-    struct label_shape shape;
     struct sized_cube cube;
-    assert_true(label_shape_make("sphere", 1, millimetre, &shape));
-    struct labels labels = labels_of(&shape);
-    struct label_cells_options options = {.spacing = 8e-3, .keep = all_kept, .sized = &cube.cells};
-    struct label_cells plain, mesh;
-    options.size = NULL;
-    plain = make(&labels, &options);
+    FREED_BY(labelled_free) struct labelled plain = label("sphere", 1), made = label("sphere", 1);
+    struct label_cells_options options = {.spacing = 8e-3};
+    mesh_of(&plain, options);
 
     /* Sizes of about those there are, and larger ones, change nothing. */
+    options.sized = &cube.cells;
     options.size = cube.size;
     for (double least = 7e-3; least < 1; least *= 5) {
         sized_cube(30e-3, least, &cube);
-        mesh = make(&labels, &options);
-        assert_int_equal(mesh.cell_count, plain.cell_count);
-        assert_memory_equal(mesh.x, plain.x, (size_t)plain.node_count * 3 * sizeof(double));
-        assert_true(mesh.unsized == 0);
-        label_cells_free(&mesh);
+        mesh_of(&made, options);
+        assert_int_equal(made.mesh.cell_count, plain.mesh.cell_count);
+        assert_memory_equal(made.mesh.x, plain.mesh.x, (size_t)plain.mesh.node_count * 3 * sizeof(double));
+        assert_true(made.mesh.unsized == 0);
     }
 
     /* Everywhere half: the lattice of half the spacing. */
@@ -234,26 +205,21 @@ TEST(by_sizes)
     for (int n = 0; n < 8; n++) {
         cube.size[n] = 0.91 * 4e-3;
     }
-    mesh = make(&labels, &options);
-    struct label_cells_options half = {.spacing = 4e-3, .keep = all_kept};
-    FREED_BY(label_cells_free) struct label_cells halved = make(&labels, &half);
-    assert_int_equal(mesh.node_count, halved.node_count);
-    assert_int_equal(mesh.cell_count, halved.cell_count);
-    label_cells_free(&mesh);
+    mesh_of(&made, options);
+    mesh_of(&plain, (struct label_cells_options){.spacing = 4e-3});
+    assert_int_equal(made.mesh.node_count, plain.mesh.node_count);
+    assert_int_equal(made.mesh.cell_count, plain.mesh.cell_count);
 
     /* Finer to one side: mean edges about the sizes there. */
-    for (int shape_at = 0; shape_at < 4; shape_at++) {
+    options.spacing = 6e-3;
+    sized_cube(32e-3, 1.2e-3, &cube);
+    for (int i = 0; i < 4; i++) {
         static const char *const names[] = {"sphere", "two", "four", "atlas"};
-        struct label_shape other;
-        assert_true(label_shape_make(names[shape_at], 1, millimetre, &other));
-        struct labels others = labels_of(&other);
-        sized_cube(32e-3, 1.2e-3, &cube);
-        options.spacing = 0.006;
-        mesh = make(&others, &options);
-        check_cells(&mesh);
+        FREED_BY(labelled_free) struct labelled other = label(names[i], 1);
+        mesh_of(&other, options);
         double volume[2] = {0};
         int64_t count[2] = {0};
-        struct cells cells = label_cells_view(&mesh);
+        struct cells cells = label_cells_view(&other.mesh);
         for (int64_t c = 0; c < cells.count; c++) {
             double middle[3];
             cell_centroid(&cells, c, middle);
@@ -262,29 +228,22 @@ TEST(by_sizes)
             count[fine]++;
         }
         assert_true(volume[0] / (double)count[0] > 3 * volume[1] / (double)count[1]);
-        label_cells_free(&mesh);
-        free(other.label);
     }
 
     /* Sizes over a part of the body. */
     options.spacing = 8e-3;
     sized_cube(10e-3, 2e-3, &cube);
-    mesh = make(&labels, &options);
-    check_cells(&mesh);
-    assert_true(mesh.unsized > 0.5 && mesh.unsized < 1);
-    label_cells_free(&mesh);
-    label_cells_free(&plain);
-    free(shape.label);
+    mesh_of(&made, options);
+    assert_true(made.mesh.unsized > 0.5 && made.mesh.unsized < 1);
 }
 
 /* The shares sum to 1, their difference has the gradient it says, and far from the grid all is outside. */
 TEST(shares)
 {
-    struct label_shape shape;
+    FREED_BY(labelled_free) struct labelled made = label("four", 1);
+    const struct labels labels = made.labels;
     const double far[3] = {5, -3, 1e6}, step = 1e-6;
     uint64_t seed = 7;
-    assert_true(label_shape_make("four", 1, millimetre, &shape));
-    struct labels labels = labels_of(&shape);
     assert_int_equal(labels_at(&labels, far), 0);
     for (int i = 0; i < 200; i++) {
         struct label_mix mix;
@@ -307,7 +266,6 @@ TEST(shares)
             assert_true(fabs(slope - gradient[d]) < 1e-3 * 1e3);
         }
     }
-    free(shape.label);
 }
 
 RUN_TESTS(NULL, NULL)

@@ -1,5 +1,4 @@
 /* Cells from labels: the surface and the parts of a body. */
-#include "approx/cells/parts.h"
 #include "solid/folds/folds.h"
 
 #include "label_cells_fixture.h"
@@ -15,16 +14,13 @@ TEST(surface_over_labels)
     } cases[] = {{"sphere", 4, 0.6}, {"sphere", 6, 0.6}, {"two", 4, 1},  {"two", 5, 1},   {"two", 6, 1},
                  {"four", 4, 1},     {"four", 5, 1},     {"four", 6, 1}, {"shell", 4, 1}, {"shell", 5, 1.3}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        struct label_shape shape;
-        struct labels labels;
-        FREED_BY(label_cells_free)
-        struct label_cells mesh = make_of_shape(cases[i].name, 1, cases[i].spacing, &shape, &labels);
-        for (int64_t k = 0; k < mesh.facet_count * 3; k++) {
-            const double *x = mesh.x + 3 * (int64_t)mesh.facet[k];
+        FREED_BY(labelled_free)
+        struct labelled made = mesh_of_shape(cases[i].name, 1, 1e-3 * cases[i].spacing);
+        for (int64_t k = 0; k < made.mesh.facet_count * 3; k++) {
+            const double *x = made.mesh.x + 3 * (int64_t)made.mesh.facet[k];
             double r = sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
             assert_true(fabs(r - 24e-3) < 1e-3 * cases[i].most);
         }
-        free(shape.label);
     }
 }
 
@@ -67,123 +63,71 @@ TEST(parts_are_joined)
 {
     int64_t hinges = 0;
     for (uint64_t seed = 1; seed <= 20; seed++) {
-        struct label_shape shape;
-        assert_true(label_shape_make("blobs", seed, millimetre, &shape));
-        struct labels labels = labels_of(&shape);
-        struct label_cells_options options = {.spacing = 5e-3, .keep = all_kept, .largest = true};
-        FREED_BY(label_cells_free) struct label_cells mesh = make(&labels, &options);
-        check_cells(&mesh);
-        assert_int_equal(count_hinges(&mesh), mesh.hinges);
-        hinges += mesh.hinges;
-        free(shape.label);
+        FREED_BY(labelled_free) struct labelled made = label("blobs", seed);
+        mesh_of(&made, (struct label_cells_options){.spacing = 5e-3, .largest = true});
+        assert_int_equal(count_hinges(&made.mesh), made.mesh.hinges);
+        hinges += made.mesh.hinges;
     }
     assert_true(hinges <= 2);
 }
 
-static int32_t count_bodies(const struct label_cells *mesh)
-{
-    struct cells cells = label_cells_view(mesh);
-    int32_t count = 0, *part = zeros(cells.count, sizeof *part);
-    GOOD(cells_parts(&cells, part, &count, &error));
-    return count;
-}
-
-/* No node is shared by cells of two connected bodies. */
-static void check_apart(const struct label_cells *mesh)
-{
-    struct cells cells = label_cells_view(mesh);
-    int32_t count = 0, *part = zeros(cells.count, sizeof *part);
-    int32_t *of_node = zeros(cells.node_count, sizeof *of_node);
-    assert_true(part != NULL && of_node != NULL);
-    GOOD(cells_parts(&cells, part, &count, &error));
-    for (int64_t i = 0; i < 4 * cells.count; i++) {
-        int32_t *body = &of_node[cells.node[i]];
-        assert_true(*body == 0 || *body == part[i / 4] + 1);
-        *body = part[i / 4] + 1;
-    }
-}
-
 TEST(parts_that_hang_by_an_edge)
 {
-    struct label_shape shape;
     int64_t cut = 0;
-    assert_true(label_shape_make("boxes", 1, millimetre, &shape));
-    struct labels labels = labels_of(&shape);
     for (int h = 2; h <= 6; h++) {
-        struct label_cells_options options = {.spacing = 1e-3 * h, .keep = all_kept};
-        FREED_BY(label_cells_free) struct label_cells mesh = make(&labels, &options);
-        check_cells(&mesh);
-        check_apart(&mesh);
-        cut += mesh.pinched;
+        FREED_BY(labelled_free) struct labelled made = mesh_of_shape("boxes", 1, 1e-3 * h);
+        cut += made.mesh.pinched;
     }
     assert_true(cut > 0);
-    for (uint64_t seed = 1; seed <= 20; seed++) {
-        struct label_shape blobs;
-        assert_true(label_shape_make("blobs", seed, millimetre, &blobs));
-        struct labels of_blobs = labels_of(&blobs);
-        struct label_cells_options options = {.spacing = 5e-3, .keep = all_kept};
-        FREED_BY(label_cells_free) struct label_cells mesh = make(&of_blobs, &options);
-        check_apart(&mesh);
-        free(blobs.label);
-    }
-    free(shape.label);
 }
 
 TEST(specks_and_the_largest_body)
 {
-    struct label_shape shape;
-    assert_true(label_shape_make("sphere", 1, millimetre, &shape));
-    struct labels labels = labels_of(&shape);
+    FREED_BY(labelled_free) struct labelled made = label("sphere", 1);
+    const struct label_shape *shape = &made.shape;
+    const struct label_cells *mesh = &made.mesh;
     /* A cube of 5 voxels about a point of the lattice, and one of 10. */
-    for (int64_t v = 0; v < shape.size[0] * shape.size[1] * shape.size[2]; v++) {
-        double x[3] = {shape.first[0] + (double)(v % shape.size[0]),
-                       shape.first[1] + (double)(v / shape.size[0] % shape.size[1]),
-                       shape.first[2] + (double)(v / shape.size[0] / shape.size[1])};
+    for (int64_t v = 0; v < shape->size[0] * shape->size[1] * shape->size[2]; v++) {
+        double x[3] = {shape->first[0] + (double)(v % shape->size[0]),
+                       shape->first[1] + (double)(v / shape->size[0] % shape->size[1]),
+                       shape->first[2] + (double)(v / shape->size[0] / shape->size[1])};
         bool speck = fabs(x[0] + 24) < 2.5 && fabs(x[1] + 24) < 2.5 && fabs(x[2] + 24) < 2.5;
         bool cube = fabs(x[0] - 24) < 5 && fabs(x[1] - 24) < 5 && fabs(x[2] - 24) < 5;
-        shape.label[v] = speck || cube ? 1 : shape.label[v];
+        shape->label[v] = speck || cube ? 1 : shape->label[v];
     }
-    struct label_cells_options options = {.spacing = 6e-3, .keep = all_kept};
-    struct label_cells mesh = make(&labels, &options);
-    check_cells(&mesh);
-    assert_int_equal(mesh.specks, 1);
-    assert_true(mesh.speck_volume > 20e-9 && mesh.speck_volume < 200e-9);
-    assert_int_equal(count_bodies(&mesh), 2);
-    label_cells_free(&mesh);
-    options.largest = true;
-    mesh = make(&labels, &options);
-    assert_int_equal(count_bodies(&mesh), 1);
+    mesh_of(&made, (struct label_cells_options){.spacing = 6e-3});
+    assert_int_equal(mesh->specks, 1);
+    assert_true(mesh->speck_volume > 20e-9 && mesh->speck_volume < 200e-9);
+    assert_int_equal(count_bodies(mesh, zeros(mesh->cell_count, sizeof(int32_t))), 2);
+    mesh_of(&made, (struct label_cells_options){.spacing = 6e-3, .largest = true});
+    assert_int_equal(count_bodies(mesh, zeros(mesh->cell_count, sizeof(int32_t))), 1);
     /* The sphere does not grow to make up for the cube. */
-    struct cells cells = label_cells_view(&mesh);
+    struct cells cells = label_cells_view(mesh);
     double volume = 0;
     for (int64_t c = 0; c < cells.count; c++) {
         volume += cell_volume(&cells, c);
     }
     assert_true(fabs(volume / (4.0 / 3 * M_PI * pow(24e-3, 3)) - 1) < 0.01);
-    label_cells_free(&mesh);
-    free(shape.label);
 }
 
 /* Walls of gaps and cavities narrower than the spacing do not pass through each other. */
 TEST(walls_stay_apart)
 {
     for (uint64_t seed = 1; seed <= 3; seed++) {
-        struct label_shape shape;
-        struct labels labels;
-        FREED_BY(label_cells_free) struct label_cells mesh = make_of_shape("waves", seed, 5, &shape, &labels);
-        assert_true(mesh.facet_count > 2000);
+        FREED_BY(labelled_free) struct labelled made = mesh_of_shape("waves", seed, 5e-3);
+        const struct label_cells *mesh = &made.mesh;
+        assert_true(mesh->facet_count > 2000);
         struct fold_input input = {.dim = 3,
-                                   .node_count = mesh.node_count,
-                                   .x = mesh.x,
-                                   .cell_count = mesh.cell_count,
-                                   .cell = mesh.cell,
-                                   .facet_count = mesh.facet_count,
-                                   .facet = mesh.facet,
-                                   .held = zeros(mesh.facet_count, sizeof *input.held)};
+                                   .node_count = mesh->node_count,
+                                   .x = mesh->x,
+                                   .cell_count = mesh->cell_count,
+                                   .cell = mesh->cell,
+                                   .facet_count = mesh->facet_count,
+                                   .facet = mesh->facet,
+                                   .held = zeros(mesh->facet_count, sizeof *input.held)};
         FREED_BY(folds_free) struct folds folds = {0};
         GOOD(folds_build(&input, &folds, &error));
         assert_int_equal(folds.at_rest.kind, FOLD_NONE);
-        free(shape.label);
     }
 }
 

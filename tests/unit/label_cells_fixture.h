@@ -4,17 +4,14 @@
 #include "unit.h"
 
 #include "approx/cells/cells.h"
+#include "approx/cells/parts.h"
 #include "approx/cells/quality.h"
 #include "approx/labels/label_cells.h"
 
 #include "label_shapes.h"
 
 static const double millimetre[3] = {1, 1, 1};
-static const bool all_kept[64] = {
-    false, true, true, true, true, true, true, true, true, true, true, true, true, true, true, true,
-    true,  true, true, true, true, true, true, true, true, true, true, true, true, true, true, true,
-    true,  true, true, true, true, true, true, true, true, true, true, true, true, true, true, true,
-    true,  true, true, true, true, true, true, true, true, true, true, true, true, true, true, true};
+static bool all_kept[64]; /* but the outside */
 
 static inline struct labels labels_of(const struct label_shape *shape)
 {
@@ -27,15 +24,30 @@ static inline struct labels labels_of(const struct label_shape *shape)
     return labels;
 }
 
-static inline struct label_cells make(const struct labels *labels, const struct label_cells_options *options)
+static inline int32_t count_bodies(const struct label_cells *mesh, int32_t *part)
 {
-    struct label_cells mesh;
-    GOOD(label_cells_make(labels, options, &mesh, &error));
-    return mesh;
+    struct cells cells = label_cells_view(mesh);
+    int32_t count = 0;
+    GOOD(cells_parts(&cells, part, &count, &error));
+    return count;
 }
 
-/* Positive, conforming, within the bounds of the angles; the facets are the boundary and look outward: the
- * flux of x through them is dim times the volume. */
+/* No node is shared by cells of two connected bodies. */
+static inline void check_apart(const struct label_cells *mesh)
+{
+    int corners = mesh->dim + 1;
+    int32_t *part = zeros(mesh->cell_count, sizeof *part);
+    int32_t *of_node = zeros(mesh->node_count, sizeof *of_node);
+    (void)count_bodies(mesh, part);
+    for (int64_t i = 0; i < corners * mesh->cell_count; i++) {
+        int32_t *body = &of_node[mesh->cell[i]];
+        assert_true(*body == 0 || *body == part[i / corners] + 1);
+        *body = part[i / corners] + 1;
+    }
+}
+
+/* Positive, conforming, within the bounds of the angles, bodies apart; the facets are the boundary and look
+ * outward: the flux of x through them is dim times the volume. */
 static inline void check_cells(const struct label_cells *mesh)
 {
     struct cells cells = label_cells_view(mesh);
@@ -68,17 +80,44 @@ static inline void check_cells(const struct label_cells *mesh)
         }
     }
     assert_true(fabs(flux / dim / volume - 1) < 1e-9);
+    check_apart(mesh);
 }
 
-/* Cells of a shape of one-millimetre voxels, all labels kept, at a spacing in mm, checked. *labels is a view
- * of *shape, whose label[] is to be freed. */
-static inline struct label_cells make_of_shape(const char *name, uint64_t seed, double spacing,
-                                               struct label_shape *shape, struct labels *labels)
+/* A shape of one-millimetre voxels, and cells of it. */
+struct labelled {
+    struct label_shape shape;
+    struct labels labels;
+    struct label_cells mesh;
+};
+
+static inline struct labelled label(const char *name, uint64_t seed)
 {
-    assert_true(label_shape_make(name, seed, millimetre, shape));
-    *labels = labels_of(shape);
-    struct label_cells_options options = {.spacing = 1e-3 * spacing, .keep = all_kept};
-    struct label_cells mesh = make(labels, &options);
-    check_cells(&mesh);
-    return mesh;
+    struct labelled made;
+    assert_true(label_shape_make(name, seed, millimetre, &made.shape));
+    made.labels = labels_of(&made.shape);
+    made.mesh = (struct label_cells){0};
+    memset(all_kept + 1, true, sizeof all_kept - 1);
+    return made;
+}
+
+/* Cells of a shape, all labels kept, checked; those that there were are released. */
+static inline void mesh_of(struct labelled *made, struct label_cells_options options)
+{
+    label_cells_free(&made->mesh);
+    options.keep = all_kept;
+    GOOD(label_cells_make(&made->labels, &options, &made->mesh, &error));
+    check_cells(&made->mesh);
+}
+
+static inline struct labelled mesh_of_shape(const char *name, uint64_t seed, double spacing)
+{
+    struct labelled made = label(name, seed);
+    mesh_of(&made, (struct label_cells_options){.spacing = spacing});
+    return made;
+}
+
+static inline void labelled_free(struct labelled *made)
+{
+    label_cells_free(&made->mesh);
+    free(made->shape.label);
 }
