@@ -278,30 +278,30 @@ mts --version
 END
 }
 
-@test "fault 19: a full device, also at the end of writing" {
+# What a command says besides notes.
+but_notes() { grep -v -e 'left out' -e 'with defaults' -e 'thin for their cells' -e 'keep their old value'; }
+
+# each STATUS PATTERN COMMAND-LINE: every command, written @ there, has this status and says this behind its name; nothing if it is empty
+each() {
+    local command status message survived
     mtled block.scene table.mts > u.mts
     cloud -d 2 -k regular -n 3 --box 0,0.1,0,0.1 | shapefn 2> said | mtled block.scene > coarse.mts
     while IFS= read -r command; do
         status=0
-        message=$(bash -c "$command > /dev/full" 2>&1 | grep -v -e 'left out' -e 'with defaults' -e 'thin for their cells' -e 'keep their old value') || true
-        bash -c "$command > /dev/full" 2> /dev/null || status=$?
-        survived=$([[ $status -eq 3 && $message == "${command%% *}: standard output: "*"No space left on device" ]] && echo yes || echo no)
+        bash -c "${3//@/$command}" 2> said || status=$?
+        message=$(but_notes < said || true)
+        survived=$([[ $status -eq $1 && $message == ${2:+"${command%% *}: "$2} ]] && echo yes || echo no)
         record "$command" "$status" "$message" "$survived"
-        [ "$survived" = yes ] || { echo "$command: $status: $message"; false; }
+        [ "$survived" = yes ] || { echo "$command: $status: $message"; return 1; }
     done < <(commands)
 }
 
+@test "fault 19: a full device, also at the end of writing" {
+    each 3 'standard output: *No space left on device' '@ > /dev/full'
+}
+
 @test "fault 20: a reader that stops early" {
-    mtled block.scene table.mts > u.mts
-    cloud -d 2 -k regular -n 3 --box 0,0.1,0,0.1 | shapefn 2> said | mtled block.scene > coarse.mts
-    while IFS= read -r command; do
-        # By then the reader is gone.
-        run --separate-stderr bash -c "{ sleep 0.1; exec $command; } | true; exit \${PIPESTATUS[0]}"
-        message=$(grep -v -e 'left out' -e 'with defaults' -e 'thin for their cells' -e 'keep their old value' <<< "$stderr" || true)
-        survived=$([[ $status -eq 141 && -z $message ]] && echo yes || echo no)
-        record "$command" "$status" "$message" "$survived"
-        [ "$survived" = yes ] || { echo "$command: $status: $message"; false; }
-    done < <(commands)
+    each 141 '' '{ sleep 0.1; exec @; } | true; exit ${PIPESTATUS[0]}' # by then the reader is gone
 }
 
 # A run that takes a while.
