@@ -1,28 +1,7 @@
-/* Cells from labels: the surface and the parts of a body. */
+/* Cells from labels: the parts of a body. */
 #include "solid/folds/folds.h"
 
 #include "label_cells_fixture.h"
-
-/* The surface of a body stays where it is, wherever its labels meet beneath, or are too thin for the lattice:
- * nodes on the boundary of a sphere of 24 mm. Voxels of 1 mm know it to half a voxel, and the volumes of
- * labels move it by as much. */
-TEST(surface_over_labels)
-{
-    static const struct {
-        const char *name;
-        double spacing, most; /* mm */
-    } cases[] = {{"sphere", 4, 0.6}, {"sphere", 6, 0.6}, {"two", 4, 1},  {"two", 5, 1},   {"two", 6, 1},
-                 {"four", 4, 1},     {"four", 5, 1},     {"four", 6, 1}, {"shell", 4, 1}, {"shell", 5, 1.3}};
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        FREED_BY(labelled_free)
-        struct labelled made = mesh_of_shape(cases[i].name, 1, 1e-3 * cases[i].spacing);
-        for (int64_t k = 0; k < made.mesh.facet_count * 3; k++) {
-            const double *x = made.mesh.x + 3 * (int64_t)made.mesh.facet[k];
-            double r = sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
-            assert_true(fabs(r - 24e-3) < 1e-3 * cases[i].most);
-        }
-    }
-}
 
 /* Nodes at which the cells of the body fall into parts without a common face. */
 static int64_t count_hinges(const struct label_cells *mesh)
