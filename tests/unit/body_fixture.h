@@ -131,3 +131,16 @@ static inline struct face_table sample_face_table(const struct sample *sample)
                                .lists = &sample->assembly.boundary_lists,
                                .phi = sample->assembly.boundary_phi};
 }
+
+/* Facets of one side of the box, of all for -1: they stand in the order of their sides. */
+static inline struct facet_set facets_of_side(const struct sample *sample, int side)
+{
+    struct facet_set set = {0};
+    for (int64_t f = 0; f < sample->cloud.facet_count; f++) {
+        if (side < 0 || sample->cloud.facet_set[f] == side) {
+            set.facet = set.count++ == 0 ? sample->cloud.facets + f * sample->dim : set.facet;
+        }
+    }
+    assert_true(set.count > 0);
+    return set;
+}

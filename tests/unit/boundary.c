@@ -3,24 +3,6 @@
 #include "body_fixture.h"
 #include "base/vector.h"
 
-static struct facet_set all_facets(const struct sample *sample)
-{
-    return (struct facet_set){sample->cloud.facet_count, sample->cloud.facets};
-}
-
-/* Facets of one side of the box: they stand in the order of their sides. */
-static struct facet_set facets_of_side(const struct sample *sample, int side)
-{
-    struct facet_set set = {0};
-    for (int64_t f = 0; f < sample->cloud.facet_count; f++) {
-        if (sample->cloud.facet_set[f] == side) {
-            set.facet = set.count++ == 0 ? sample->cloud.facets + f * sample->dim : set.facet;
-        }
-    }
-    assert_true(set.count > 0);
-    return set;
-}
-
 static struct boundary_averages averages_of(const struct sample *sample, struct facet_set set)
 {
     struct boundary_averages averages;
@@ -76,7 +58,7 @@ TEST_IN_EACH_DIM(averages_split_at_corners)
         FREED_BY(sample_free)
         struct sample sample = make_wide_sample(dim, smoothed == 1, dim == 2 ? 6 : 5, 2.6);
         FREED_BY(boundary_averages_free)
-        struct boundary_averages averages = averages_of(&sample, all_facets(&sample));
+        struct boundary_averages averages = averages_of(&sample, facets_of_side(&sample, -1));
         int64_t expected = 0, longest = 0;
         double area = 0.0, outward[3] = {0.0};
         check_averages(&sample, &averages);
@@ -116,7 +98,7 @@ TEST_IN_EACH_DIM(divergence_theorem)
 {
     FREED_BY(sample_free) struct sample sample = make_sample(dim, true, dim == 2 ? 7 : 4);
     FREED_BY(boundary_averages_free)
-    struct boundary_averages averages = averages_of(&sample, all_facets(&sample));
+    struct boundary_averages averages = averages_of(&sample, facets_of_side(&sample, -1));
     int64_t count = sample.cloud.node_count * dim;
     double *inside = zeros(count, sizeof *inside), *outside = zeros(count, sizeof *outside);
     double largest = 0.0;
@@ -224,7 +206,7 @@ TEST_IN_EACH_DIM(whole_sides)
 {
     FREED_BY(sample_free) struct sample sample = make_sample(dim, true, 5);
     struct face_table table = sample_face_table(&sample);
-    struct facet_set set = all_facets(&sample);
+    struct facet_set set = facets_of_side(&sample, -1);
     for (int split = 0; split < 2; split++) {
         FREED_BY(boundary_averages_free) struct boundary_averages averages = {0};
         FREED_BY(boundary_sides_free) struct boundary_sides sides = {0};

@@ -16,8 +16,7 @@ struct cloud {
 
 static double *numbers(int64_t count, double low, double high, struct random *random)
 {
-    double *array = array_new(count, sizeof *array);
-    assert_non_null(array);
+    double *array = zeros(count, sizeof *array);
     for (int64_t i = 0; i < count; i++) {
         array[i] = uniform(random, low, high);
     }
@@ -42,9 +41,6 @@ static struct cloud make_cloud(int dim, int64_t node_count, int64_t centre_count
 static void release(struct cloud *cloud)
 {
     coarse_space_free(&cloud->coarse);
-    free(cloud->X);
-    free(cloud->v);
-    free(cloud->amount);
 }
 
 /* What coarse_space_restrict and coarse_space_prolongate say, by plain sums. */
@@ -69,51 +65,33 @@ static void sum_plainly(const struct cloud *cloud, double *amount, double *u)
 TEST_IN_EACH_DIM(plain_sums)
 {
     for (int64_t centres = 1; centres <= MOST_CENTRES; centres += 7) {
-        struct cloud cloud = make_cloud(dim, NODES, centres);
+        FREED_BY(release) struct cloud cloud = make_cloud(dim, NODES, centres);
         int64_t size = cloud.coarse.count * dim;
-        double *amount = array_new(size, sizeof *amount), *expected = array_new(size, sizeof *expected);
-        double *u = array_new(cloud.size, sizeof *u), *field = array_new(cloud.size, sizeof *field);
-        assert_true(amount != NULL && expected != NULL && u != NULL && field != NULL);
+        double *amount = zeros(size, sizeof *amount), *expected = zeros(size, sizeof *expected);
+        double *u = zeros(cloud.size, sizeof *u), *field = zeros(cloud.size, sizeof *field);
         sum_plainly(&cloud, expected, field);
         coarse_space_restrict(&cloud.coarse, cloud.v, amount);
         coarse_space_prolongate(&cloud.coarse, cloud.amount, u);
         ALL_NEAR(size, amount, expected, 1e-12 * NODES);
         ALL_NEAR(cloud.size, u, field, 1e-13);
-        free(amount);
-        free(expected);
-        free(u);
-        free(field);
-        release(&cloud);
     }
 }
 
 /* The same bits for 1, 2 and 3 threads. */
-TEST(same_bits)
+TEST_IN_EACH_DIM(same_bits)
 {
     int before = omp_get_max_threads();
-    for (int dim = 2; dim <= 3; dim++) {
-        struct cloud cloud = make_cloud(dim, NODES, MOST_CENTRES);
-        int64_t size = cloud.coarse.count * dim;
-        double *amounts[2], *coarse[2]; /* the first ones, and others */
-        for (int k = 0; k < 2; k++) {
-            amounts[k] = array_new(size, sizeof **amounts);
-            coarse[k] = array_new(cloud.size, sizeof **coarse);
-            assert_true(amounts[k] != NULL && coarse[k] != NULL);
-        }
-        for (int i = 0; i < 3; i++) {
-            int k = i > 0;
-            omp_set_num_threads(i + 1);
-            memset(coarse[k], 0, (size_t)cloud.size * sizeof **coarse);
-            coarse_space_restrict(&cloud.coarse, cloud.v, amounts[k]);
-            coarse_space_prolongate(&cloud.coarse, cloud.amount, coarse[k]);
-            assert_memory_equal(amounts[0], amounts[k], (size_t)size * sizeof **amounts);
-            assert_memory_equal(coarse[0], coarse[k], (size_t)cloud.size * sizeof **coarse);
-        }
-        for (int k = 0; k < 2; k++) {
-            free(amounts[k]);
-            free(coarse[k]);
-        }
-        release(&cloud);
+    FREED_BY(release) struct cloud cloud = make_cloud(dim, NODES, MOST_CENTRES);
+    int64_t size = cloud.coarse.count * dim;
+    double *amounts[3], *u[3];
+    for (int i = 0; i < 3; i++) {
+        amounts[i] = zeros(size, sizeof **amounts);
+        u[i] = zeros(cloud.size, sizeof **u);
+        omp_set_num_threads(i + 1);
+        coarse_space_restrict(&cloud.coarse, cloud.v, amounts[i]);
+        coarse_space_prolongate(&cloud.coarse, cloud.amount, u[i]);
+        assert_memory_equal(amounts[0], amounts[i], (size_t)size * sizeof **amounts);
+        assert_memory_equal(u[0], u[i], (size_t)cloud.size * sizeof **u);
     }
     omp_set_num_threads(before);
 }
@@ -121,10 +99,9 @@ TEST(same_bits)
 /* The shares of all centres make the constant field, and with the places of the centres the coordinates. */
 TEST_IN_EACH_DIM(linear_fields)
 {
-    struct cloud cloud = make_cloud(dim, 500, 6);
+    FREED_BY(release) struct cloud cloud = make_cloud(dim, 500, 6);
     const struct coarse_space *coarse = &cloud.coarse;
-    SCRATCH double *u = array_new(cloud.size, sizeof *u);
-    assert_non_null(u);
+    double *u = zeros(cloud.size, sizeof *u);
     memset(cloud.amount, 0, (size_t)(coarse->count * dim) * sizeof *cloud.amount);
     for (int c = 0; c < coarse->centre_count; c++) {
         for (int a = 0; a < dim; a++) {
@@ -137,7 +114,6 @@ TEST_IN_EACH_DIM(linear_fields)
     for (int64_t i = 0; i < cloud.size; i++) {
         NEAR_TO(u[i], 1.0 + cloud.X[i], 1e-14);
     }
-    release(&cloud);
 }
 
 static double share_at(const struct coarse_space *coarse, int64_t node, int32_t centre)
@@ -153,7 +129,7 @@ static double share_at(const struct coarse_space *coarse, int64_t node, int32_t 
  * within the radius only, however many there are. */
 TEST(shares_are_few)
 {
-    struct cloud cloud = make_cloud(3, 20000, 400);
+    FREED_BY(release) struct cloud cloud = make_cloud(3, 20000, 400);
     const struct coarse_space *coarse = &cloud.coarse;
     double farthest = 0.0, nearest = INFINITY;
     for (int64_t n = 0; n < coarse->node_count; n++) {
@@ -178,7 +154,6 @@ TEST(shares_are_few)
     AT_MOST(few, 16.0);
     AT_MOST(farthest, nearest);
     NEAR_TO(coarse->radius, 1.5 * farthest, 1e-14);
-    release(&cloud);
 }
 
 /* A ring of nodes with a slit, each with its neighbours, and `alone` nodes behind it without any. */

@@ -16,19 +16,8 @@ struct pair {
     struct boundary_averages points, averages;
     int32_t *part;
     struct contact contact;
+    bool any; /* facets face each other at rest */
 };
-
-static struct facet_set facets_of_side(const struct sample *sample, int side)
-{
-    struct facet_set set = {0};
-    for (int64_t f = 0; f < sample->cloud.facet_count; f++) {
-        if (side < 0 || sample->cloud.facet_set[f] == side) {
-            set.facet = set.count++ == 0 ? sample->cloud.facets + f * sample->dim : set.facet;
-        }
-    }
-    assert_true(set.count > 0);
-    return set;
-}
 
 /* The opposite facets become those of the other box. */
 static void move_over(const struct pair *pair, struct opposite *opposite)
@@ -47,10 +36,9 @@ static void move_over(const struct pair *pair, struct opposite *opposite)
     }
 }
 
-/* Both boxes, or the whole boundary of one against itself. */
-static struct pair *make_pair(const struct sample *sample, bool itself, bool *any)
+/* Both boxes, or the whole boundary of one against itself; the contact refers to *pair. */
+static void make_pair(const struct sample *sample, bool itself, struct pair *pair)
 {
-    struct pair *pair = zeros(1, sizeof *pair);
     *pair = (struct pair){.sample = sample, .nodes = sample->cloud.node_count};
     struct face_table table = sample_face_table(sample);
     struct opposite opposite;
@@ -72,9 +60,8 @@ static struct pair *make_pair(const struct sample *sample, bool itself, bool *an
         opposite_move(&opposite, u);
     }
     GOOD(contact_between_build(&pair->points, &pair->averages, dim, 2 * pair->nodes, table.per_face,
-                               &opposite, pair->part, itself ? 0 : 1, 1e5, NULL, NULL, true,
-                               &pair->contact, any, &error));
-    return pair;
+                               &opposite, pair->part, itself ? 0 : 1, 1e5, NULL, NULL, true, &pair->contact,
+                               &pair->any, &error));
 }
 
 static void pair_free(struct pair *pair)
@@ -116,16 +103,16 @@ TEST(force_is_gradient)
 {
     struct random random = {1};
     for (int s = 0; s < 4; s++) {
-        bool any;
-        struct pair *pair = make_pair(&samples[s], false, &any);
-        int64_t size = 2 * pair->nodes * samples[s].dim;
+        FREED_BY(pair_free) struct pair pair;
+        make_pair(&samples[s], false, &pair);
+        int64_t size = 2 * pair.nodes * samples[s].dim;
         double *u = zeros(size, sizeof *u), *force = zeros(size, sizeof *force);
         double *aside = zeros(size, sizeof *aside), h = 1e-8, most = 0.0;
-        assert_true(any);
-        hold(&pair->contact, &random);
-        overlap(pair, 1e-3, 5e-4, &random, u);
-        contact_force(&pair->contact, u, force);
-        assert_true(pressing(&pair->contact) > pair->contact.count / 2);
+        assert_true(pair.any);
+        hold(&pair.contact, &random);
+        overlap(&pair, 1e-3, 5e-4, &random, u);
+        contact_force(&pair.contact, u, force);
+        assert_true(pressing(&pair.contact) > pair.contact.count / 2);
         for (int64_t i = 0; i < size; i++) {
             most = fmax(most, fabs(force[i]));
         }
@@ -133,13 +120,12 @@ TEST(force_is_gradient)
             double at = u[i], energy[2];
             for (int side = 0; side < 2; side++) {
                 u[i] = at + (side ? h : -h);
-                contact_force(&pair->contact, u, aside);
-                energy[side] = contact_energy(&pair->contact);
+                contact_force(&pair.contact, u, aside);
+                energy[side] = contact_energy(&pair.contact);
             }
             u[i] = at;
             NEAR_TO(force[i], -(energy[1] - energy[0]) / (2.0 * h), 2e-4 * most);
         }
-        pair_free(pair);
     }
 }
 
@@ -149,15 +135,15 @@ TEST(friction)
 {
     struct random random = {5};
     for (int s = 0; s < 4; s++) {
-        bool any;
-        struct pair *pair = make_pair(&samples[s], false, &any);
-        struct contact *contact = &pair->contact;
-        int64_t size = 2 * pair->nodes * samples[s].dim, sticks = 0, slips = 0;
+        FREED_BY(pair_free) struct pair pair;
+        make_pair(&samples[s], false, &pair);
+        struct contact *contact = &pair.contact;
+        int64_t size = 2 * pair.nodes * samples[s].dim, sticks = 0, slips = 0;
         double *u = zeros(size, sizeof *u), *force = zeros(size, sizeof *force), h = 1e-9, most = 0.0,
                sum[3] = {0.0};
         double *aside = zeros(size, sizeof *aside);
         GOOD(friction_build(contact, 0.4, false, &error));
-        overlap(pair, 1e-3, 1e-4, &random, u);
+        overlap(&pair, 1e-3, 1e-4, &random, u);
         contact_measure(contact, u, true);
         contact_accept(contact);
         friction_slide(contact);
@@ -198,7 +184,6 @@ TEST(friction)
         for (int a = 0; a < samples[s].dim; a++) { /* the corners that react may be others */
             NEAR_TO(again[a], total[a], 1e-9 * most);
         }
-        pair_free(pair);
     }
 }
 
@@ -206,20 +191,20 @@ TEST(forces_balance)
 {
     struct random random = {2};
     for (int round = 0; round < 12; round++) {
-        bool any;
-        struct pair *pair = make_pair(&samples[round % 4], false, &any);
-        int dim = pair->sample->dim;
-        int64_t size = 2 * pair->nodes * dim;
+        FREED_BY(pair_free) struct pair pair;
+        make_pair(&samples[round % 4], false, &pair);
+        int dim = pair.sample->dim;
+        int64_t size = 2 * pair.nodes * dim;
         double *u = zeros(size, sizeof *u), *force = zeros(size, sizeof *force);
         double sum[3] = {0.0}, moment[3] = {0.0}, levers[3] = {0.0}, total[3], scale = 0.0;
-        hold(&pair->contact, &random);
-        overlap(pair, 1e-3, 1e-3, &random, u);
-        contact_force(&pair->contact, u, force);
-        contact_total(&pair->contact, total);
-        for (int64_t n = 0; n < 2 * pair->nodes; n++) {
+        hold(&pair.contact, &random);
+        overlap(&pair, 1e-3, 1e-3, &random, u);
+        contact_force(&pair.contact, u, force);
+        contact_total(&pair.contact, total);
+        for (int64_t n = 0; n < 2 * pair.nodes; n++) {
             double x[3] = {0.0}, f[3] = {0.0};
             for (int a = 0; a < dim; a++) {
-                x[a] = pair->X[n * dim + a] + u[n * dim + a];
+                x[a] = pair.X[n * dim + a] + u[n * dim + a];
                 f[a] = force[n * dim + a];
                 sum[a] += f[a];
                 scale += fabs(f[a]);
@@ -229,12 +214,12 @@ TEST(forces_balance)
             }
         }
         /* The line of a force goes through y_p, which is held_p / k_p from where the force acts. */
-        for (int64_t p = 0; p < pair->contact.count; p++) {
-            const double *held = pair->contact.held + p * dim;
+        for (int64_t p = 0; p < pair.contact.count; p++) {
+            const double *held = pair.contact.held + p * dim;
             double lever[3] = {0.0}, f[3] = {0.0};
-            contact_point_force(&pair->contact, p, f);
+            contact_point_force(&pair.contact, p, f);
             for (int a = 0; a < dim; a++) {
-                lever[a] = held[a] / pair->contact.stiffness[p];
+                lever[a] = held[a] / pair.contact.stiffness[p];
             }
             for (int a = 0; a < 3; a++) {
                 levers[a] += lever[(a + 1) % 3] * f[(a + 2) % 3] - lever[(a + 2) % 3] * f[(a + 1) % 3];
@@ -245,7 +230,6 @@ TEST(forces_balance)
             NEAR_TO(sum[a], 0.0, 1e-14 * scale);
             NEAR_TO(moment[a], levers[a], 1e-14 * sample_size * scale);
         }
-        pair_free(pair);
     }
 }
 
@@ -254,21 +238,21 @@ TEST(forces_balance)
 TEST(creases)
 {
     for (int s = 0; s < 4; s++) {
-        bool any;
-        struct pair *pair = make_pair(&samples[s], false, &any);
-        struct contact *contact = &pair->contact;
-        int dim = pair->sample->dim;
-        int64_t size = 2 * pair->nodes * dim, turned = 0;
+        FREED_BY(pair_free) struct pair pair;
+        make_pair(&samples[s], false, &pair);
+        struct contact *contact = &pair.contact;
+        int dim = pair.sample->dim;
+        int64_t size = 2 * pair.nodes * dim, turned = 0;
         double *u = zeros(size, sizeof *u), *before = zeros(contact->count * 3, sizeof *before), way = 1e-5;
-        for (int64_t a = 0; a < pair->averages.count; a++) {
+        for (int64_t a = 0; a < pair.averages.count; a++) {
             contact->multiplier[a * dim] = -150.0;
         }
         contact_spread_multipliers(contact);
         for (int step = 0; step < 1000; step++) {
-            for (int64_t n = 0; n < 2 * pair->nodes; n++) {
-                double aside = pair->X[n * dim + 1] - 0.5 * sample_size;
-                u[n * dim] = -8.0 * aside * aside - (n < pair->nodes ? 0.0 : 1e-3);
-                u[n * dim + 1] = n < pair->nodes ? way * step : 0.0;
+            for (int64_t n = 0; n < 2 * pair.nodes; n++) {
+                double aside = pair.X[n * dim + 1] - 0.5 * sample_size;
+                u[n * dim] = -8.0 * aside * aside - (n < pair.nodes ? 0.0 : 1e-3);
+                u[n * dim + 1] = n < pair.nodes ? way * step : 0.0;
             }
             contact_measure(contact, u, true);
             for (int64_t p = 0; p < contact->count; p++) {
@@ -284,7 +268,6 @@ TEST(creases)
             }
         }
         assert_true(turned > 10);
-        pair_free(pair);
     }
 }
 
@@ -294,26 +277,25 @@ TEST(linear_fields)
     static const double turned[9] = {0.8, -0.6, 0.0, 0.6, 0.8, 0.0, 0.0, 0.0, 1.0};
     static const double stretch[3] = {0.9, 1.2, 0.95};
     for (int s = 0; s < 4; s++) {
-        bool any;
-        struct pair *pair = make_pair(&samples[s], false, &any);
-        int dim = pair->sample->dim;
-        double *u = zeros(2 * pair->nodes * dim, sizeof *u), depth = 1e-3;
-        for (int64_t n = 0; n < 2 * pair->nodes; n++) {
+        FREED_BY(pair_free) struct pair pair;
+        make_pair(&samples[s], false, &pair);
+        int dim = pair.sample->dim;
+        double *u = zeros(2 * pair.nodes * dim, sizeof *u), depth = 1e-3;
+        for (int64_t n = 0; n < 2 * pair.nodes; n++) {
             for (int a = 0; a < dim; a++) {
                 double x = 0.0;
                 for (int b = 0; b < dim; b++) {
-                    double away = n >= pair->nodes && b == 0 ? depth : 0.0;
-                    x += turned[3 * a + b] * (stretch[b] * pair->X[n * dim + b] - away);
+                    double away = n >= pair.nodes && b == 0 ? depth : 0.0;
+                    x += turned[3 * a + b] * (stretch[b] * pair.X[n * dim + b] - away);
                 }
-                u[n * dim + a] = x - pair->X[n * dim + a];
+                u[n * dim + a] = x - pair.X[n * dim + a];
             }
         }
-        contact_measure(&pair->contact, u, true);
-        for (int64_t p = 0; p < pair->contact.count; p++) {
-            NEAR_TO(pair->contact.gap[p], -depth, 1e-12);
-            NEAR_TO(pair->contact.normal[p * dim], -turned[0], 1e-10);
+        contact_measure(&pair.contact, u, true);
+        for (int64_t p = 0; p < pair.contact.count; p++) {
+            NEAR_TO(pair.contact.gap[p], -depth, 1e-12);
+            NEAR_TO(pair.contact.normal[p * dim], -turned[0], 1e-10);
         }
-        pair_free(pair);
     }
 }
 
@@ -323,40 +305,39 @@ TEST(skipping)
     struct random random = {3};
     int64_t touches = 0, skipped = 0, steps = 0;
     for (int s = 0; s < 4; s++) {
-        bool any;
-        struct pair *pair = make_pair(&samples[s], false, &any),
-                    *always = make_pair(&samples[s], false, &any);
-        int64_t size = 2 * pair->nodes * samples[s].dim;
+        FREED_BY(pair_free) struct pair pair;
+        make_pair(&samples[s], false, &pair);
+        FREED_BY(pair_free) struct pair always;
+        make_pair(&samples[s], false, &always);
+        int64_t size = 2 * pair.nodes * samples[s].dim;
         double *u = zeros(size, sizeof *u), *force = zeros(size, sizeof *force);
         double *expected = zeros(size, sizeof *expected);
         for (int step = 0; step < 150; step++) {
             double away = 1e-3 * sin(0.05 * step);
             for (int64_t i = 0; i < size; i++) {
-                bool closer = i >= pair->nodes * samples[s].dim && i % samples[s].dim == 0;
+                bool closer = i >= pair.nodes * samples[s].dim && i % samples[s].dim == 0;
                 u[i] = 0.98 * u[i] + uniform(&random, -1e-5, 1e-5) + (closer ? 0.02 * away : 0.0);
             }
-            for (int64_t p = 0; p < always->contact.count; p++) {
-                always->contact.between->checked_free[p] = -INFINITY;
+            for (int64_t p = 0; p < always.contact.count; p++) {
+                always.contact.between->checked_free[p] = -INFINITY;
             }
             memset(force, 0, (size_t)size * sizeof *force);
             memset(expected, 0, (size_t)size * sizeof *expected);
-            contact_force(&pair->contact, u, force);
-            contact_force(&always->contact, u, expected);
+            contact_force(&pair.contact, u, force);
+            contact_force(&always.contact, u, expected);
             assert_memory_equal(force, expected, (size_t)size * sizeof *force);
-            contact_accept(&pair->contact);
-            contact_accept(&always->contact);
+            contact_accept(&pair.contact);
+            contact_accept(&always.contact);
             if (step % 40 == 39) {
-                contact_augment(&pair->contact);
-                contact_augment(&always->contact);
+                contact_augment(&pair.contact);
+                contact_augment(&always.contact);
             }
-            for (int64_t p = 0; p < pair->contact.count; p++) {
-                skipped += !pair->contact.view[p].searched;
+            for (int64_t p = 0; p < pair.contact.count; p++) {
+                skipped += !pair.contact.view[p].searched;
                 steps++;
             }
-            touches += pressing(&pair->contact);
+            touches += pressing(&pair.contact);
         }
-        pair_free(pair);
-        pair_free(always);
     }
     assert_true(touches > steps / 10 && skipped > steps / 5);
 }
@@ -366,22 +347,22 @@ TEST(box_against_itself)
 {
     struct random random = {4};
     for (int s = 0; s < 4; s++) {
-        bool any;
-        struct pair *pair = make_pair(&samples[s], true, &any);
-        const struct opposite *opposite = &pair->contact.between->opposite;
-        int dim = pair->sample->dim;
-        int64_t size = 2 * pair->nodes * dim;
+        FREED_BY(pair_free) struct pair pair;
+        make_pair(&samples[s], true, &pair);
+        const struct opposite *opposite = &pair.contact.between->opposite;
+        int dim = pair.sample->dim;
+        int64_t size = 2 * pair.nodes * dim;
         double *u = zeros(size, sizeof *u);
-        assert_false(any);
+        assert_false(pair.any);
         for (int round = 0; round < 20; round++) {
             for (int64_t i = 0; i < size; i++) { /* flattened, sheared and rough */
-                double x = pair->X[i - i % dim + 1];
+                double x = pair.X[i - i % dim + 1];
                 u[i] = uniform(&random, -3e-3, 3e-3) + (i % dim == 1   ? -0.5 * x
                                                         : i % dim == 0 ? 0.8 * x
                                                                        : 0.0);
             }
-            contact_measure(&pair->contact, u, round % 2 == 0);
-            assert_int_equal(pressing(&pair->contact), 0);
+            contact_measure(&pair.contact, u, round % 2 == 0);
+            assert_int_equal(pressing(&pair.contact), 0);
         }
         for (int64_t f = 0; f < opposite->surface.facet_count; f++) {
             for (int64_t g = 0; g < f; g++) {
@@ -390,7 +371,6 @@ TEST(box_against_itself)
                 assert_true(one != other);
             }
         }
-        pair_free(pair);
     }
 }
 

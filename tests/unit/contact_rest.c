@@ -47,45 +47,23 @@ static bool resolves(const double X[2 * (FACETS + 1)])
     return resolved;
 }
 
-TEST(circle_of_unequal_facets)
+/* A circle of unequal facets; a line that is flat but for round-off; a fold in every facet; an edge between
+ * flat sides. */
+TEST(curves_and_folds)
 {
-    double X[2 * (FACETS + 1)];
-    for (int n = 0; n <= FACETS; n++) {
-        double angle = .15 * n + .05 * (n % 3);
-        X[2 * n] = cos(angle);
-        X[2 * n + 1] = sin(angle);
+    for (int kind = 0; kind < 4; kind++) {
+        double X[2 * (FACETS + 1)];
+        for (int n = 0; n <= FACETS; n++) {
+            double angle = .15 * n + .05 * (n % 3), along = .1 * n;
+            const double place[4][2] = {
+                {cos(angle), sin(angle)},
+                {along * cos(.3) + 1e-14 * (n % 3), along * sin(.3) - 1e-14 * (n % 2)},
+                {along, .02 * (n % 3)},
+                {along, .02 * abs(n - FACETS / 2)}};
+            memcpy(X + 2 * n, place[kind], sizeof place[kind]);
+        }
+        assert_true(resolves(X) == (kind < 2));
     }
-    assert_true(resolves(X));
-}
-
-TEST(flat_but_for_round_off)
-{
-    double X[2 * (FACETS + 1)];
-    for (int n = 0; n <= FACETS; n++) {
-        X[2 * n] = .1 * n * cos(.3) + 1e-14 * (n % 3);
-        X[2 * n + 1] = .1 * n * sin(.3) - 1e-14 * (n % 2);
-    }
-    assert_true(resolves(X));
-}
-
-TEST(fold_in_every_facet)
-{
-    double X[2 * (FACETS + 1)];
-    for (int n = 0; n <= FACETS; n++) {
-        X[2 * n] = .1 * n;
-        X[2 * n + 1] = .02 * (n % 3);
-    }
-    assert_false(resolves(X));
-}
-
-TEST(edge_between_flat_sides)
-{
-    double X[2 * (FACETS + 1)];
-    for (int n = 0; n <= FACETS; n++) {
-        X[2 * n] = .1 * n;
-        X[2 * n + 1] = .02 * abs(n - FACETS / 2);
-    }
-    assert_false(resolves(X));
 }
 
 RUN_TESTS(NULL, NULL)
