@@ -59,6 +59,19 @@ shortened() {
         { print }'
 }
 
+# with_section FILE NAME TYPE ROWS [ATTRIBUTES]: a stream as text, with one more section, its rows from the file ROWS
+with_section() {
+    cat "$4" > "rows.$2"
+    mts text "$1" | awk -v file="rows.$2" -v head="# $2 $3 $(wc -l < "rows.$2") $(awk '{ print NF; exit }' "rows.$2") enc=text ${5-}" '
+        /^# end/ { print head; while ((getline line < file) > 0) print line; printf "\n\n# end %d\n", $3 + 1; next }
+        { print }'
+}
+
+# value NAME: that line's value in $output, a table of fieldcmp or fielderr.
+value() {
+    awk -F '\t' -v name="$1" '$1 == name { print $2; found = 1 } END { exit !found }' <<< "$output"
+}
+
 # refused STATUS TEXT COMMAND...: that status, nothing on standard output, one line on standard error, PROGRAM: ...TEXT...,
 # besides the note on stages that were run.
 refused() {

@@ -18,11 +18,6 @@ field() {
     } > "$file"
 }
 
-# value NAME: that line's value in $output.
-value() {
-    awk -F '\t' -v name="$1" '$1 == name { print $2; found = 1 } END { exit !found }' <<< "$output"
-}
-
 square() {
     field a.txt "0 0 0 0" "1 0 3 4" "1 1 0 0" "0 1 0 1"
     field b.txt "0 0 0 0" "1 0 0 0" "1 1 0 0" "0 1 0 0"

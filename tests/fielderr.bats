@@ -2,11 +2,6 @@
 
 load common.bash
 
-# value NAME: that line's value in $output.
-value() {
-    awk -F '\t' -v name="$1" '$1 == name { print $2; found = 1 } END { exit !found }' <<< "$output"
-}
-
 # about VALUE EXPECTED SHARE
 about() {
     awk -v a="$1" -v b="$2" -v share="$3" 'BEGIN { exit !((a - b) ^ 2 <= (share * b) ^ 2) }' || { echo "$1 is not about $2"; return 1; }
@@ -15,14 +10,9 @@ about() {
 # field FILE N ERROR [VALUES]: a lattice of N nodes per axis with the linear field (1 + x, y), off by ERROR along x.
 field() {
     cloud -d 2 -k regular -n "$2" --box 0,1,0,1 -t -o cloud.dat
-    {
-        sed '/^# end/d' cloud.dat
-        echo "# u f8 $(($2 * $2)) 2 enc=text unit=m"
-        mts print nodes.x cloud.dat | awk -v off="$3" '{ print 1 + $1 + off, $2 }'
-        printf '\n\n# reactions f8 2 2 enc=text unit=N/m rows=%s\n%s\n%s\n' "${4:-foot,head}" "3 $(awk "BEGIN { print 4 + $3 }")" "0 -5"
-        printf '\n\n# energy f8 1 2 enc=text unit=J/m cols=internal,contact\n%s 0\n' "$(awk "BEGIN { print 10 - 2 * $3 }")"
-        printf '\n\n# end %d\n' $(($(grep -c '^# [a-z].* enc=' cloud.dat) + 3))
-    } > "$1"
+    with_section cloud.dat u f8 <(mts print nodes.x cloud.dat | awk -v off="$3" '{ print 1 + $1 + off, $2 }') unit=m |
+        with_section - reactions f8 <(awk "BEGIN { print 3, 4 + $3; print 0, -5 }") "unit=N/m rows=${4:-foot,head}" |
+        with_section - energy f8 <(awk "BEGIN { print 10 - 2 * $3, 0 }") 'unit=J/m cols=internal,contact' > "$1"
     mts check "$1"
 }
 

@@ -28,7 +28,7 @@ kinds() {
 
 @test "written in each format and read again: type, values, version and places stay, to nibabel as well" {
     cloud -d 3 -k regular -n 3 --box 0,0.002,0,0.002,0,0.002 > cube.mts
-    { mts text cube.mts | sed '/^# end/d'; printf '# u f8 27 3\n'; printf '0 0 0\n%.0s' {1..27}; printf '\n\n# end 6\n'; } > still.mts
+    with_section cube.mts u f8 <(yes '0 0 0' | head -n 27) > still.mts
     { kinds | sed 's/$/ sform_code=2 srow_x.0=-.6 srow_x.1=.8 srow_x.3=1 srow_y.0=.8 srow_y.1=.6 srow_z.2=2 intent_code=1002 intent_name=what/'
         echo 'qform_code=3'; } | sed 's/$/ descrip=by_hand/' | nifti raw
     for ((i = 1; i <= 21; i++)); do

@@ -16,18 +16,6 @@ near() {
         END { exit bad || n == 0 }'
 }
 
-# with_section FILE NAME TYPE COLS COMMAND...: a text stream with one more section, its rows from a command.
-with_section() {
-    local file=$1 name=$2 type=$3 cols=$4
-    shift 4
-    "$@" > "rows.$name"
-    mts text "$file" | awk -v name="$name" -v type="$type" -v cols="$cols" -v rows="$(wc -l < "rows.$name")" '
-        /^# end/ { printf "# %s %s %d %d enc=text\n", name, type, rows, cols
-                   while ((getline line < ("rows." name)) > 0) print line
-                   printf "\n\n# end %d\n", $3 + 1; next }
-        { print }'
-}
-
 @test "wrong command lines" {
     for arguments in "-f u -f u" "-p" "a b" "-u mm linear.mts" "-k 2 linear.mts" "-b mls1 linear.mts" \
         "-p x -k 2 -R 3 linear.mts" "-p x -k 0 linear.mts" "-p x -u foot linear.mts" "-p x -R 1foot linear.mts" \
@@ -50,7 +38,7 @@ with_section() {
 }
 
 @test "a table of points in a unit, with comments; displaced points" {
-    with_section linear.mts displacement f8 2 awk 'BEGIN { for (i = 0; i < 144; i++) print "0.25 -0.5" }' |
+    with_section linear.mts displacement f8 <(awk 'BEGIN { for (i = 0; i < 144; i++) print "0.25 -0.5" }') |
         sed 's/^# u /# scalar /; s/^# displacement /# u /' > moved.txt
     printf '# landmarks, mm\n500 500\n\n250\t125 # the second\n' > landmarks.tsv
     interp -p landmarks.tsv -u mm --deformed -t moved.txt > at.txt
@@ -65,7 +53,7 @@ with_section() {
 }
 
 @test "fields: all by default, chosen by name, nothing else passes" {
-    with_section linear.mts heat f8 1 seq 144 | with_section - notes i4 1 seq 144 > two.txt
+    with_section linear.mts heat f8 <(seq 144) | with_section - notes i4 <(seq 144) > two.txt
     interp -p points.mts -t two.txt > at.txt
     [ "$(grep -c '^# [a-z]* f8' at.txt)" -eq 2 ]
     [ "$(awk '/^# [a-z.]+ [fi][48]/ { print $2 }' at.txt | xargs)" = "nodes.x u heat" ]
@@ -111,7 +99,7 @@ END
     gmsh -2 -v 1 legs.geo -o legs.msh
     nodes -u m legs.msh | mts text > legs.txt
     mts print nodes.x legs.txt | awk '{ print 1 + 2 * $1 - $2 }' > linear
-    with_section legs.txt u f8 1 cat linear > field.txt
+    with_section legs.txt u f8 linear > field.txt
     awk 'BEGIN { for (i = -4; i < 35; i++) for (j = -4; j < 25; j++) print i / 10, j / 10 }' > grid.tsv
     refused 2 "grid.tsv: row 0 at (-0.4, -0.4): farther" interp -p grid.tsv -u m field.txt
     [ -z "$output" ]

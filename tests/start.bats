@@ -57,11 +57,7 @@ as_soon() {
 
 @test "a field that turns the body inside out: begun at a part of it, the same state" {
     cloud -d 2 -k jittered -n 12 --box 0,0.1,0,0.1 --jitter 0.2 > body.mts
-    mts text body.mts | awk '
-        /^# / { on = $2 == "nodes.x" }
-        /^# end / { print "# u f8 " n " 2 enc=text unit=m cols=x,y"; for (i = 1; i <= n; i++) print u[i]; print "\n"; $3++ }
-        on && /^[-0-9]/ { u[++n] = -1.2 * $1 " 0" }
-        { print }' > inside_out.dat
+    with_section body.mts u f8 <(mts print nodes.x body.mts | awk '{ print -1.2 * $1, 0 }') 'unit=m cols=x,y' > inside_out.dat
     pressed_block > push.scene
     mtled -q -o cold.dat push.scene body.mts 2> note
     mtled -q -s inside_out.dat -o warm.dat push.scene body.mts 2> said

@@ -156,19 +156,15 @@ END
 # sizes LEAST GRADATION X Y Z: a stream of sizes over 100 mm about the origin, LEAST at a place, growing with the distance (mm)
 sizes() {
     cloud -d 3 -k regular -n 21 --box -0.05,0.05,-0.05,0.05,-0.05,0.05 -t -o cloud.dat
-    sed '/^# end/d' cloud.dat
-    echo "# size f8 9261 1 enc=text unit=m"
-    mts print nodes.x cloud.dat | awk -v s="$1" -v g="$2" -v x="$3" -v y="$4" -v z="$5" \
-        '{ print s / 1e3 + g * sqrt(($1 - x / 1e3) ^ 2 + ($2 - y / 1e3) ^ 2 + ($3 - z / 1e3) ^ 2) }'
-    printf '\n\n# end %d\n' $(($(grep -c '^# [a-z].* enc=' cloud.dat) + 1))
+    with_section cloud.dat size f8 <(mts print nodes.x cloud.dat | awk -v s="$1" -v g="$2" -v x="$3" -v y="$4" -v z="$5" \
+        '{ print s / 1e3 + g * sqrt(($1 - x / 1e3) ^ 2 + ($2 - y / 1e3) ^ 2 + ($3 - z / 1e3) ^ 2) }') unit=m
 }
 
 @test "--sizes: bad ones are refused in a line" {
     phantom sphere > image.nii.gz
     phantom sphere@slice > slice.nii.gz
     sizes 2 0.3 0 0 0 > sizes.dat
-    refused 2 "for bodies in space" voxels -h 4mm --sizes <(cloud -d 2 -k regular -n 3 --box 0,1,0,1 -t |
-        awk '/^# end/ { print "# size f8 9 1 enc=text unit=m"; for (i = 0; i < 9; i++) print 1; print "\n"; $3++ } { print }') slice.nii.gz
+    refused 2 "for bodies in space" voxels -h 4mm --sizes <(cloud -d 2 -k regular -n 3 --box 0,1,0,1 | with_section - size f8 <(yes 1 | head -n 9)) slice.nii.gz
     refused 2 "cells in 3D, the image is of a body in 2D" voxels -h 4mm --sizes sizes.dat slice.nii.gz
     refused 2 "run sizefield -b" voxels -h 4mm --sizes <(mts drop size sizes.dat) image.nii.gz
     refused 2 "cells" voxels -h 4mm --sizes <(mts drop cells sizes.dat) image.nii.gz
@@ -178,8 +174,7 @@ sizes() {
         refused 2 "size: row 7: " voxels -h 4mm --sizes bad.dat image.nii.gz
         [[ "$stderr" == *"is not finite and positive"* ]]
     done
-    refused 2 "the sizes lie elsewhere" voxels -h 4mm --sizes <(cloud -d 3 -k regular -n 3 --box 1,2,1,2,1,2 -t |
-        awk '/^# end/ { print "# size f8 27 1 enc=text unit=m"; for (i = 0; i < 27; i++) print 0.002; print "\n"; $3++ } { print }') image.nii.gz
+    refused 2 "the sizes lie elsewhere" voxels -h 4mm --sizes <(cloud -d 3 -k regular -n 3 --box 1,2,1,2,1,2 | with_section - size f8 <(yes 0.002 | head -n 27)) image.nii.gz
     sizes 0.05 0.3 0 0 0 > many.dat
     refused 2 "more than 67108864 lattice points" voxels -h 4mm --sizes many.dat image.nii.gz
     sizes 0.001 0.3 0 0 0 > tiny.dat

@@ -4,12 +4,7 @@ load common.bash
 
 # with_u FILE AWK: stream FILE with a section u, the components printed by AWK from each row of nodes.x.
 with_u() {
-    mts print nodes.x "$1" | awk "{ $2 }" OFMT=%.17g > u.rows
-    mts text "$1" | awk -v rows="$(wc -l < u.rows)" -v cols="$(awk '{ print NF; exit }' u.rows)" '
-        /^# end/ { printf "# u f8 %d %d enc=text unit=m\n", rows, cols
-                   while ((getline line < "u.rows") > 0) print line
-                   printf "\n\n# end %d\n", $3 + 1; next }
-        { print }'
+    with_section "$1" u f8 <(mts print nodes.x "$1" | awk "{ $2 }" OFMT=%.17g) unit=m
 }
 
 # A cube of 60 mm, moved by the field of nifti.py.
