@@ -200,6 +200,29 @@ begin_and_end() {
     done
 }
 
+# goes_on WHOLE SCENE [SIGNAL [SECTION]]: ended on the way, as begin_and_end does it, and begun again, a run on table.mts gives what WHOLE has.
+goes_on() {
+    begin_and_end "${3:-TERM}" "$2" "${4-}"
+    [ "$status" -eq $((128 + $(kill -l "${3:-TERM}"))) ]
+    mtled -c run.ckpt -o resumed.dat "$2" table.mts 2> resumed.said
+    grep -q '^mtled: going on from step' resumed.said
+    cmp <(bare "$1") <(bare resumed.dat)
+}
+
+# processes COUNT ARGUMENTS OF mtled: also as root in a container, more than there are cores, and without mpirun's own words.
+processes() {
+    OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 mpirun --quiet --oversubscribe --bind-to none -n "$1" mtled-mpi "${@:2}"
+}
+
+# however WHOLE ARGUMENTS OF mtled: threads and, where MPI is there, processes give what WHOLE has.
+however() {
+    OMP_NUM_THREADS=3 mtled -q -o again.dat "${@:2}"
+    cmp <(bare "$1") <(bare again.dat)
+    [ -x "$BUILD/bin/mtled-mpi" ] || return 0
+    processes 2 -q -o again.dat "${@:2}"
+    cmp <(bare "$1") <(bare again.dat)
+}
+
 # worked PID HUNDREDTHS: wait until it has had so many hundredths of a second of a processor, or has ended.
 worked() {
     local tries

@@ -6,17 +6,10 @@ load common.bash
 setup() {
     [ -x "$BUILD/bin/mtled-mpi" ] || skip "MPI is not installed (make deps)"
     enter_alone
-    # Root in a container, more processes than cores, and none of mpirun's own words.
     export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 }
 
-processes() { # COUNT ARGUMENTS OF mtled
-    local count=$1
-    shift
-    mpirun --quiet --oversubscribe --bind-to none -n "$count" mtled-mpi "$@"
-}
-
-# The same in the background; what is said goes to `said`, and the processes are the children of $!.
+# processes in the background; what is said goes to `said`, and the processes are the children of $!.
 begin() {
     local count=$1
     shift

@@ -118,18 +118,8 @@ notch_scene() { # FACETS AGAINST [MORE OUTPUT]
     sed -i 's/tolerance = 1e-6/tolerance = 1e-4/' run.scene
     cp whole.mts table.mts
     mtled run.scene table.mts > one.dat
-    OMP_NUM_THREADS=3 mtled run.scene table.mts > many.dat
-    cmp one.dat many.dat
-    if [ -x "$BUILD/bin/mtled-mpi" ]; then
-        export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
-        mpirun --quiet --oversubscribe --bind-to none -n 2 mtled-mpi -q -o two.dat run.scene table.mts
-        cmp <(bare one.dat) <(bare two.dat)
-    fi
-    begin_and_end TERM run.scene
-    [ $status -eq 143 ]
-    mtled -c run.ckpt -o out.dat run.scene table.mts 2> said
-    grep -q '^mtled: going on from step' said
-    cmp one.dat out.dat
+    however one.dat run.scene table.mts
+    goes_on one.dat run.scene
 }
 
 @test "where nothing touches, a contact of the whole boundary changes nothing but steps: a convex body, a thin bent one, one with furrows" {
