@@ -32,7 +32,7 @@ kinds() {
     { kinds | sed 's/$/ sform_code=2 srow_x.0=-.6 srow_x.1=.8 srow_x.3=1 srow_y.0=.8 srow_y.1=.6 srow_z.2=2 intent_code=1002 intent_name=what/'
         echo 'qform_code=3'; } | sed 's/$/ descrip=by_hand/' | nifti raw
     for ((i = 1; i <= 21; i++)); do
-        for format in nii nii.gz nrrd mha; do
+        for format in $( ((i % 2)) && echo nii.gz mha || echo nii nrrd); do # of both versions
             warp -i nearest -o a.$format $i.nii still.mts 2> note
             warp -i nearest -o $i.$format.nii a.$format still.mts 2> note
         done
@@ -41,7 +41,7 @@ kinds() {
 import nibabel as nib, numpy as np
 for i in range(1, 22):
     a = nib.load(f"{i}.nii")
-    for form in "nii", "nii.gz", "nrrd", "mha":
+    for form in ("nii.gz", "mha") if i % 2 else ("nii", "nrrd"):
         b = nib.load(f"{i}.{form}.nii")
         assert b.get_data_dtype() == a.get_data_dtype().newbyteorder("<") and np.array_equal(np.asarray(a.dataobj), np.asarray(b.dataobj)), (i, form)
         assert np.allclose(a.affine, b.affine, atol=1e-6) and np.allclose(b.get_qform(), b.affine, atol=1e-3), (i, form)
