@@ -85,6 +85,19 @@ refused() {
     [[ "$stderr" == "$1: "*"$text"* ]] || { echo "message: $stderr"; return 1; }
 }
 
+# each_fault FILE COMMAND... < CASES: each "LINE|TEXT|MESSAGE": with that text in FILE, the command refuses it, and names the line unless that is 0
+each_fault() {
+    local line text message status where
+    while IFS='|' read -r line text message; do
+        printf '%b' "$text" > "$1"
+        status=0
+        "${@:2}" < /dev/null > out 2> said || status=$?
+        where="$1:$line: "
+        [ "$line" != 0 ] || where="$1: "
+        [[ $status -eq 2 && $(wc -l < said) -eq 1 && ! -s out && $(cat said) == "$2: $where"*"$message"* ]] || { echo "$where$message; not: $(cat said)"; return 1; }
+    done
+}
+
 # The head of a scene of a block, on a cloud of 0.1 x 0.1 m: block ANALYSIS [MORE LINES OF scene]
 block() {
     cat << END

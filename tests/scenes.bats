@@ -4,21 +4,17 @@ load common.bash
 
 setup() { enter_loosely; }
 
-# faults < CASES: each "LINE|TEXT|MESSAGE": the text is refused with that message, which names the line unless that is 0. @h: a head in 2D, @3 in 3D,
-# @d of a dynamic scene; @r: a material's region, @b: all of it; @g, @z: of laws with fibres
+# faults < CASES: as each_fault has them, of scenes. @h: a head in 2D, @3 in 3D, @d of a dynamic scene; @r: a material's region, @b: all of it;
+# @g, @z: of laws with fibres
 faults() {
-    local h='[scene]\ndim = 2\nanalysis = quasi-static\n' r='[material m]\nregion = r\n' status line text message key where
+    local h='[scene]\ndim = 2\nanalysis = quasi-static\n' r='[material m]\nregion = r\n' line key
     local d=${h/quasi-static/dynamic} b="${r}E = 3000\nnu = .49\nrho = 1000\n" three=${h/2/3}
     local g="${r}model = guccione\nC = 9\nbf = 1\nbt = 1\nbfs = 1\nkappa = 1e5\n" z="${r}model = holzapfel-gasser-ogden\nc = 9\nk1 = 1\nk2 = 1\ngamma = 30\nkappa = 1e5\n"
-    while IFS='|' read -r line text message; do
-        for key in h d r b g z; do text=${text//@$key/${!key}}; done
-        printf '%b' "${text//@3/$three}" > bad.scene
-        status=0
-        mtled bad.scene < /dev/null > out 2> said || status=$?
-        where="bad.scene:$line: "
-        [ "$line" != 0 ] || where="bad.scene: "
-        [[ $status -eq 2 && $(wc -l < said) -eq 1 && ! -s out && $(cat said) == "mtled: $where"*"$message"* ]] || { echo "$where$message; not: $(cat said)"; return 1; }
-    done
+    while IFS= read -r line; do
+        for key in h d r b g z; do line=${line//@$key/${!key}}; done
+        printf '%s\n' "${line//@3/$three}"
+    done > cases
+    each_fault bad.scene mtled bad.scene < cases
 }
 
 @test "the form is strict: sections, keys, numbers, bytes" {

@@ -8,19 +8,6 @@ setup() {
         'space origin: (0,0,0)' '' '1 2 3 4 5 6 7 8' > image.nrrd
 }
 
-# faults FILE COMMAND... < CASES: each "LINE|TEXT|MESSAGE": with that text in FILE, the command refuses it, and names the line unless that is 0
-faults() {
-    local line text message status where
-    while IFS='|' read -r line text message; do
-        printf '%b' "$text" > "$1"
-        status=0
-        "${@:2}" > out 2> said || status=$?
-        where="$1:$line: "
-        [ "$line" != 0 ] || where="$1: "
-        [[ $status -eq 2 && $(wc -l < said) -eq 1 && ! -s out && $(cat said) == "$2: $where"*"$message"* ]] || { echo "$where$message; not: $(cat said)"; return 1; }
-    done
-}
-
 @test "tables: numbers to the bit, comments, blanks" {
     printf '# heading, with a comma\n\t0.10000000000000001  -1.7976931348623157e+308\t5e-324 # row\n \n.33333333333333331 69.1628 -0.0\n\n' > a.tsv
     sample --outside 0 -p a.tsv image.nrrd 2> note | tail -n 2 > read
@@ -28,7 +15,7 @@ faults() {
 }
 
 @test "tables: each fault by its line" {
-    faults a.tsv sample --outside 0 -p a.tsv image.nrrd << 'END'
+    each_fault a.tsv sample --outside 0 -p a.tsv image.nrrd << 'END'
 2|1 2 3\n3 x 4\n|column 2: 'x' is not a finite number
 1|1,5 2 3\n|'1,5' is not a finite number: write decimal points, and blanks
 1|1;2 3\n|blanks between numbers
@@ -81,8 +68,8 @@ END
 0|||holds no point
 END
     printf '%s\n' "2|${json/\%/}x|more behind the value" '1|{"a": nil}|neither true, false nor null' "1|{\"a\" 1}|':' is expected" '1|{"\\x": 1}|unknown escape' >> cases
-    faults a.mrk.json sample --outside 0 -p a.mrk.json image.nrrd < cases
-    faults a.fcsv sample --outside 0 -p a.fcsv image.nrrd << 'END'
+    each_fault a.mrk.json sample --outside 0 -p a.mrk.json image.nrrd < cases
+    each_fault a.fcsv sample --outside 0 -p a.fcsv image.nrrd << 'END'
 2|1,1,-2,3\n2,1,x,3\n|y: 'x'
 2|# columns = x,y\n1,2\n|no column z
 1|# CoordinateSystem = 2\n|neither RAS nor LPS
@@ -122,5 +109,5 @@ for name, data in {"binary": h + one + t, "cut": h + one + t[:-1], "other": b"x"
     done
     { echo solid; facet; echo endsolid; facet; } > behind.stl
     refused 2 "behind.stl:10: 'facet' stands outside of 'solid'" incise -s behind.stl cube.mts
-    faults a.stl incise -s a.stl cube.mts <<< "4|solid\nfacet normal 0 0 1\nouter loop\nvertex 1,0\n|'1,0' is not a finite number"
+    each_fault a.stl incise -s a.stl cube.mts <<< "4|solid\nfacet normal 0 0 1\nouter loop\nvertex 1,0\n|'1,0' is not a finite number"
 }
