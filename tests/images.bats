@@ -67,14 +67,14 @@ assert b.min() < -5 and b.max() > 260 and m.array_equal(a, m.clip(m.rint(b), 0, 
     refused 2 scaling sample -p voxels 4.nii
 }
 
-# lie FILE...: at the places of voxels (i, j, k) by a matrix, its rows one after the other, in mm: places
+# lie MATRIX [VOXELS]: where they lie, mm, by the rows of a matrix one after the other, as the file places
 lie() {
     awk -v m="$1" '{ split(m, a, " "); for (r = 0; r < 12; r += 4) printf "%.12g ", a[r + 1] * $1 + a[r + 2] * $2 + a[r + 3] * $3 + a[r + 4]; print "" }' "${2:-voxels}" > places
 }
 
-# finds FILE: the values are found there, also between voxels
+# finds FILE: the values of 1.txt are those at these places, by linear interpolation; notes into said
 finds() {
-    sample -u mm -p places "$1" 2> said | awk '!/^#/ { print $4 }' | paste - "${2:-1.txt}" | awk '{ d = $1 - $2; if (!(d * d < 1e-6 * (1 + $2 * $2))) { print; exit 1 } n++ } END { exit !n }'
+    sample -u mm -p places "$1" 2> said | awk '!/^#/ { print $4 }' | paste - 1.txt | awk '{ d = $1 - $2; if (!(d * d < 1e-6 * (1 + $2 * $2))) { print; exit 1 } n++ } END { exit !n }'
 }
 
 @test "NIfTI: places by sform, before qform, before the sizes of voxels; units" {
@@ -154,7 +154,7 @@ for bit in range(80, 8 * len(data), 11): open(f"turned.{bit}", "wb").write(data[
     for file in many.gz two.gz; do values $file | cmp - 1.txt; done
 }
 
-# text FORMAT [LINES]: an image of 2 x 2 x 2 or, with dimension 2, 2 x 2 values; FORMAT: nrrd or mha
+# text FORMAT LINES: the file image, nrrd or mha, of 2 x 2 x 2 values, with these lines in its header
 text() {
     case $1 in
     nrrd) printf 'NRRD0005\n# a comment\ntype: short\nencoding: ascii\n%b\n\n1 -2 3 4\n7 20 -30 11\n' "$2" ;;
@@ -166,7 +166,7 @@ text() {
     for v in {0..7}; do echo "$((v % 2)) $((v / 2 % 2)) $((v / 4))"; done > corners
     printf '%s\n' 1 -2 3 4 7 20 -30 11 > 1.txt
     turned='space directions: (0,-2,0) (3,0,0) (0,0,4)\nspace origin: (10,20,30)' three='dimension: 3\nsizes: 2 2 2\nkinds: domain domain domain\n'
-    sized='NDims = 3\nDimSize = 2 2 2\n' flat='dimension: 2\nsizes: 2 2\nencoding: ascii\n'
+    sized='NDims = 3\nDimSize = 2 2 2\n'
     while IFS='|' read -r format lines matrix; do
         lines=${lines//TURNED/$turned}
         text "$format" "$([ "$format" = nrrd ] && echo "$three" || echo "$sized")$lines"
@@ -196,7 +196,7 @@ END
 
 @test "NRRD and MetaImage: vectors of a space turn with it, lists do not; what the header leaves open is noted" {
     while IFS='|' read -r sizes kinds space numbers axis; do
-        [[ $sizes == 3* ]] && before='none ' after= || before= after=' none'
+        [[ $sizes == 3* ]] && before='none ' after='' || before='' after=' none'
         text nrrd "dimension: 4\nsizes: $sizes\n${kinds:+kinds: $kinds\n}space: $space\nspace directions: $before(1,0,0) (0,1,0) (0,0,1)$after"
         sed -i '$d; s/^1 -2 3 4/1 2 3 4 5 6/' image
         [ "$(sample -u mm -p <(echo 0 0 0) image 2> note | awk 'NR == 2 { print $4, $5, $6 }')" = "$numbers" ]
