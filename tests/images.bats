@@ -69,19 +69,22 @@ assert b.min() < -5 and b.max() > 260 and m.array_equal(a, m.clip(m.rint(b), 0, 
 
 # lie MATRIX [VOXELS]: where they lie, mm, by the rows of a matrix one after the other, as the file places
 lie() {
-    awk -v m="$1" '{ split(m, a, " "); for (r = 0; r < 12; r += 4) printf "%.12g ", a[r + 1] * $1 + a[r + 2] * $2 + a[r + 3] * $3 + a[r + 4]; print "" }' "${2:-voxels}" > places
+    awk -v m="$1" '{ split(m, a, " ")
+        for (r = 0; r < 12; r += 4) printf "%.12g ", a[r + 1] * $1 + a[r + 2] * $2 + a[r + 3] * $3 + a[r + 4]
+        print "" }' "${2:-voxels}" > places
 }
 
 # finds FILE: the values of 1.txt are those at these places, by linear interpolation; notes into said
 finds() {
-    sample -u mm -p places "$1" 2> said | awk '!/^#/ { print $4 }' | paste - 1.txt | awk '{ d = $1 - $2; if (!(d * d < 1e-6 * (1 + $2 * $2))) { print; exit 1 } n++ } END { exit !n }'
+    sample -u mm -p places "$1" 2> said | awk '!/^#/ { print $4 }' | paste - 1.txt |
+        awk '{ d = $1 - $2; if (!(d * d < 1e-6 * (1 + $2 * $2))) { print; exit 1 } n++ } END { exit !n }'
 }
 
 @test "NIfTI: places by sform, before qform, before the sizes of voxels; units" {
     sizes='type=uint8 pixdim.2=2 pixdim.3=3' turned='pixdim.0=-1 qform_code=1 quatern_d=0.70710678118654757 qoffset_x=4 qoffset_y=5 qoffset_z=6'
     sform='sform_code=4 srow_x.1=-2 srow_x.3=10 srow_y.2=3 srow_y.3=20 srow_z.0=-1 srow_z.3=30'
-    for version in 1 'version=2 order=>'; do
-        { echo "$sizes"; echo "$sizes $turned"; for unit in 0 1 2 3; do echo "$sizes $turned $sform xyzt_units=$unit"; done; } | sed "s/^/version=$version /; s/version=version/version/" | nifti raw
+    for version in version=1 'version=2 order=>'; do
+        { echo "$sizes"; echo "$sizes $turned"; printf '%s\n' "$sizes $turned $sform xyzt_units="{0,1,2,3}; } | sed "s/^/$version /" | nifti raw
         lie '1 0 0 0 0 2 0 0 0 0 3 0'
         finds 1.nii
         grep -q 'neither sform nor qform' said
