@@ -15,18 +15,19 @@ double problem_heap_bytes(void)
     return (double)info.uordblks + (double)info.hblkhd;
 }
 
-/* Lists as the tool support makes them: the grid belongs to it. */
+/* Lists by distance, as the tool support makes them; the space belongs to it. */
 static enum status build_lists(const struct problem *problem, int64_t count, const double *x,
                                const char *name, struct support_lists *lists, struct error *error)
 {
     enum status status;
-    struct point_grid grid = {0};
+    struct support_options options = problem->options;
+    struct support_space space = {0};
+    options.visibility = VISIBILITY_DISTANCE;
     support_free(lists);
-    TRY(point_grid_build(&grid, problem->cloud.dim, problem->cloud.node_count, problem->cloud.x,
-                         problem->radius, error));
-    TRY(support_build(&problem->options, &grid, NULL, NULL, count, x, name, lists, error));
+    TRY(support_space_build(&options, &problem->cells, problem->radius, &space, error));
+    TRY(support_build(&options, &space, NULL, count, x, name, lists, error));
 done:
-    point_grid_free(&grid);
+    support_space_free(&space);
     return status;
 }
 

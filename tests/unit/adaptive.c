@@ -80,10 +80,10 @@ static double *stiffness(const struct body *body, int64_t count, const double *x
     int dim = body->cells.dim;
     int64_t n = body->cells.node_count;
     double *K = zeros(n * n, sizeof *K);
-    FREED_BY(point_grid_free) struct point_grid grid = {0};
+    FREED_BY(support_space_free) struct support_space space = {0};
     FREED_BY(support_free) struct support_lists found = {0};
-    GOOD(point_grid_build(&grid, dim, n, body->cells.x, body->radius, &error));
-    GOOD(support_build(&body->options.support, &grid, NULL, NULL, count, x, "points.x", &found, &error));
+    GOOD(support_space_build(&body->options.support, &body->cells, body->radius, &space, &error));
+    GOOD(support_build(&body->options.support, &space, NULL, count, x, "points.x", &found, &error));
     double *phi = zeros(found.ptr[count], sizeof *phi);
     double *dphi = zeros(found.ptr[count] * dim, sizeof *dphi);
     struct neighbours view = support_view(&found);
