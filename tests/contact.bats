@@ -129,6 +129,9 @@ lid() {
         printf '[contact groove]\nfacets = *\nrigid = groove.tsv\nunit = mm\nside = left\n[output]\nreactions = yes\n'; } > whole.scene
     sed 's/^facets = \*/facets = skin/' whole.scene > skin.scene
     shapefn < disc.mts 2> said | mtled whole.scene > whole.dat 2> said
+    printf -- '-200 129.289\n0 -70.711\n\n0 -70.711\n200 129.289\n' > sides.tsv # in two parts, the same surface
+    sed 's/groove.tsv/sides.tsv/' whole.scene > sides.scene
+    shapefn < disc.mts 2> said | mtled sides.scene 2> said | cmp <(rows u whole.dat) <(rows u)
     shapefn < named.mts 2> said | mtled skin.scene > skin.dat 2> said
     cmp <(rows u whole.dat) <(rows u skin.dat)
     sides=$(mts text named.mts | rows facets | wc -l)

@@ -288,7 +288,7 @@ each() {
     cloud -d 2 -k regular -n 3 --box 0,0.1,0,0.1 | shapefn 2> said | mtled block.scene > coarse.mts
     while IFS= read -r command; do
         status=0
-        bash -c "${3//@/$command}" 2> said || status=$?
+        bash -c "${3//@/"$command"}" 2> said || status=$?
         message=$(but_notes < said || true)
         survived=$([[ $status -eq $1 && $message == ${2:+"${command%% *}: "$2} ]] && echo yes || echo no)
         record "$command" "$status" "$message" "$survived"

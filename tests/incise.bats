@@ -45,7 +45,7 @@ size_of() {
     mts text cut.mts > cut.txt
     rows facets cut.txt > facets
     paste <(rows facets.set cut.txt) facets | awk -v front=6 '$1 >= front { print $2; print $3; print $4 }' | sort -nu > lips
-    rows nodes.x cut.txt | awk 'NR == FNR { lip[$1]; next } (FNR - 1) in lip { d = (-.14 * ($1 - .03) - .8 * ($2 - .01) + 1.4 * ($3 - .012)) / 1.6185; if (d * d > 1e-6) { print; exit 1 } n++ } END { exit !(n > 60) }' lips -
+    rows nodes.x cut.txt | awk 'NR == FNR { lip[$1]; next } (FNR - 1) in lip { d = (-.14 * ($1 - .03) - .8 * ($2 - .01) + 1.4 * ($3 - .012)) / 1.6185; if (d * d > 1e-6) { print; bad = 1 } n++ } END { exit bad || n <= 60 }' lips -
     # parts of a cell have its fibre
     fibres --from zmin,60 --to zmax,-60 --axis 1,0,0 -o turned.mts body.mts 2> note
     incise -s blade.stl -n knife turned.mts > turned_cut.mts
@@ -332,7 +332,7 @@ pulled_apart() {
         mts check cut.mts
         # all nodes of the edge are near the end of this blade, none where the last one ended
         mts print sets.idx cut.mts > edge
-        mts print nodes.x cut.mts | awk -v z=$z 'NR == FNR { edge[$1]; next } (FNR - 1) in edge { n++; d = $3 - z; if (d * d > .004 ^ 2) { print; exit 1 } } END { exit !(n > 5) }' edge -
+        mts print nodes.x cut.mts | awk -v z=$z 'NR == FNR { edge[$1]; next } (FNR - 1) in edge { n++; d = $3 - z; if (d * d > .004 ^ 2) { print; bad = 1 } } END { exit bad || n <= 5 }' edge -
         mtled -q -s u.dat scene cut.mts 2> note > next.dat
         mv next.dat u.dat
         mv cut.mts body.mts

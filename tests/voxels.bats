@@ -200,6 +200,9 @@ sizes() {
     refused 2 "not a place on an axis" voxels -h 4mm -s w=8mm body.nii.gz
     refused 2 "not a place on an axis" voxels -h 4mm -s 8mm body.nii.gz
     refused 2 "for bodies in space" voxels -h 4mm --fine 2mm slice.nii.gz
+    { printf 'NRRD0004\ntype: uchar\ndimension: 3\nsizes: 9 9 1\nencoding: ascii\nspace: RAS\nspace origin: (0,0,0)\n'
+        printf 'space directions: (2,0,0) (0,1.6,1.2) (0,-1.2,1.6)\n\n' && yes 1 | head -n 81; } > oblique.nrrd
+    refused 2 'the slice is oblique to the axes of the world: resample it first' voxels -h 4mm oblique.nrrd
 }
 
 @test "a body that the image cuts off" {

@@ -106,6 +106,7 @@ static void read_nodes(const struct tool *tool, const char *file, int dim, struc
     if (status != STATUS_OK) {
         tool_fail(tool, status, "%s (a table of coordinates needs -u)", why.text);
     }
+    TOOL_TRY(tool, fail_in(&error, stream_nodes(&other, &points->dim, NULL, NULL, &error), "%s", file));
     points_of_section(tool, &other, "nodes.x", points);
     if (points->dim != dim) {
         tool_fail(tool, STATUS_INPUT, "%s: nodes.x: points in %dD, the field is in %dD", file, points->dim,

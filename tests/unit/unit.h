@@ -69,13 +69,6 @@ static inline void unit_list(struct CMUnitTest test)
     }                                                                                                        \
     static void name(int dim)
 
-/* A setup: small bodies gain nothing by threads, and the machine may be busy. */
-static inline int one_thread(__attribute__((unused)) void **state)
-{
-    omp_set_num_threads(1);
-    return 0;
-}
-
 /* Before the first test and behind the last one, or NULL: int setup(void **state), which returns 0. */
 #define RUN_TESTS(setup, teardown)                                                                           \
     int main(void)                                                                                           \

@@ -54,8 +54,8 @@ void side_read_displacement(const struct tool *tool, const char *file, const cha
     const struct nodal_field *u = &side->field;
     dim = dim > 0 ? dim : u->cells.dim;
     if (u->cells.dim != dim || u->cols != dim) {
-        tool_fail(tool, STATUS_INPUT, "%s: %s has %jd columns in %dD, where %dD is wanted", side->name, field,
-                  u->cols, u->cells.dim, dim);
+        tool_fail(tool, STATUS_INPUT, "%s: %s has %jd columns in %dD, where %d in %dD are wanted", side->name,
+                  field, u->cols, u->cells.dim, dim, dim);
     }
     if (u->cells.count == 0) {
         tool_fail(tool, STATUS_INPUT, "%s: has no cells, between which %s is interpolated", side->name,

@@ -28,8 +28,9 @@ void points_of_section(const struct tool *tool, const struct stream *stream, con
     TOOL_TRY(tool, section_kind_of(name) != NULL
                        ? stream_view(stream, name, &at, &error)
                        : stream_need(stream, name, TYPE_F8, 0, "nodes", &at, &error));
-    if (at->cols < 2 || at->cols > 3) {
-        tool_fail(tool, STATUS_INPUT, "%s: %jd columns: points have 2 or 3 coordinates", name, at->cols);
+    if (at->type != TYPE_F8 || at->cols < 2 || at->cols > 3) {
+        tool_fail(tool, STATUS_INPUT, "%s: %jd columns of %s: points have 2 or 3 coordinates, f8", name,
+                  at->cols, element_type_name(at->type));
     }
     *points = (struct points){.what = name, .dim = (int)at->cols, .count = at->rows};
     TOOL_TRY(tool, NEW_ARRAY(&points->x, at->rows * at->cols, &error));

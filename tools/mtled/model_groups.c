@@ -9,7 +9,8 @@ static enum status choose(const struct model *model, const struct scene_label *l
                           bool **wanted, struct error *error)
 {
     bool facets = kind == GROUP_FACETS;
-    RETURN_IF_ERROR(stream_groups(model->stream, kind, false, groups, error));
+    RETURN_IF_ERROR(
+        fail_in(error, stream_groups(model->stream, kind, false, groups, error), "%s", label->where));
     if (groups->names.count == 0) {
         return fail(error, STATUS_INPUT,
                     facets ? "%s: no named facets: give the mesh physical groups, or run tag"

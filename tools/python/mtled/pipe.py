@@ -85,8 +85,9 @@ class Pipe:
         if not self.stages:
             raise ValueError("a pipe without a program")
         self.notes = []
-        source = open(os.devnull, "rb")
-        if self.source is not None:
+        if self.source is None:
+            source = open(os.devnull, "rb")
+        else:
             source = tempfile.TemporaryFile()
             streams.write(self.source, source)
         for stage in self.stages:
@@ -106,8 +107,10 @@ class Pipe:
                     note(line)
             except BaseException:
                 process.kill()
+                target.close()
                 raise
         if process.returncode != 0:
+            target.close()
             raise ToolError(stage[0], process.returncode, line)
         return target
 
