@@ -54,7 +54,7 @@ confined() {
 @test "confined bodies have their whole bulk modulus, also where relaxation meets less of it" {
     cloud -d 2 -k jittered -n 8 --box 0,0.1,0,0.1 --jitter 0.1 | shapefn > confined2.mts 2> note
     cloud -d 3 -k jittered -n 6 --box 0,0.1,0,0.1,0,0.1 --jitter 0.1 | shapefn > confined3.mts 2> note
-    for nu in 0.3 0.49 0.4999 0.499999; do
+    for nu in 0.3 0.49 0.4999; do
         confined 2 "$nu" 'normal = -0.001'
     done
     for nu in 0.495; do

@@ -36,6 +36,17 @@ clamped() { # clamped DIM NU MOVE: a block between clamped ends
     both e.scene 3.mts 0.34
 }
 
+@test "forces converge as the body becomes incompressible, in no more evaluations" {
+    cloud -d 2 -k jittered -n 13 --box 0,0.1,0,0.1 --jitter 0.2 | shapefn > 2.mts 2> note
+    for nu in 0.4999 0.49999 0.499999; do
+        { clamped 2 $nu '0.01, -0.01' && printf '[output]\nreactions = yes\n'; } > limit.scene
+        mtled -v limit.scene 2.mts 2> said > u.dat
+        echo "$(rows reactions u.dat | awk 'NR == 2 { print $2 }') $(awk -F '\t' '$1 == "force evaluations" { print $2 }' said)" >> forces
+    done
+    awk '{ f[NR] = $1; n[NR] = $2 } END { q = (f[3] - f[2]) / (f[2] - f[1]); print q, f[3]
+        exit !(q > .08 && q < .12 && f[3] < -50 && (f[3] / f[1] - 1) ^ 2 < 1e-3 ^ 2 && n[3] > 0 && n[3] < 1.2 * n[1]) }' forces
+}
+
 @test "contacts: a moving lid, a plate with friction-free sides, two bodies: the same fields and forces" {
     cloud -d 2 -k jittered -n 13 --box 0,0.1,0,0.1 --jitter 0.2 | shapefn > 2.mts 2> note
     printf -- '-1 0.1\n2 0.1\n' > lid.tsv
