@@ -63,6 +63,10 @@ END
 2|{"position": [1, 2, 3], "positionStatus": "undefined"}||without a position
 2|{"position": [1, 2, -2, 3]}||without a position
 2|{"position": [1e999, -2, 3]}||a finite number is expected
+2|{"position": [1, null, -2, 3]}||a finite number is expected
+2|{"position": [[1, 2], 1, -2, 3]}||a finite number is expected
+2|{"position": [10000000000000000000000000000000000000000000000000000000000000000000, -2, 3]}||a finite number is expected
+2|{"label": null, "position": [1, -2, 3]}||a string is expected
 2||, "coordinateSystem": "IJK"|neither LPS nor RAS
 2||, "coordinateUnits": "cm"|is not mm
 0|||holds no point

@@ -93,7 +93,7 @@ enum status section_check(const struct stream *stream, const struct section *sec
         return section_check_indices(section, kind->content == INDEX_OR_NONE ? -1 : 0,
                                      other != NULL ? other->rows : INT32_MAX, "row", of, error);
     }
-    return kind->content >= FINITE && kind->content <= AT_LEAST_ONE
+    return (kind->content >= FINITE && kind->content <= AT_LEAST_ONE) || kind->content == UNITY
                ? section_check_numbers(section, kind->content, error)
                : STATUS_OK;
 }

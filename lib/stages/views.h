@@ -54,8 +54,9 @@ struct groups {
 MUST_CHECK enum status stream_groups(const struct stream *stream, enum group_kind kind, bool needed,
                                      struct groups *groups, struct error *error);
 
-/* Put groups, as above, in place of those that there are; without names, or without facets, remove these. The
- * stream takes the arrays *node and *group. */
+/* Put groups, as above, in place of those that there are; without names, or without facets, remove these.
+ * The nodes of sets come by group, ascending. The stream takes the arrays that it keeps and sets these to
+ * NULL; the others stay the caller's. */
 MUST_CHECK enum status stream_put_groups(struct stream *stream, enum group_kind kind,
                                          const struct names *names, int64_t count, int32_t **node,
                                          int32_t **group, struct error *error);

@@ -127,6 +127,9 @@ static void interpolate_in_cell(const struct cells *cells, int64_t cell, int64_t
 static enum status interpolate(const struct cells *cells, int64_t cols, const double *values, int64_t count,
                                const double *within, const double *x, double *result, struct error *error)
 {
+    if (cells->count == 0) {
+        return fail(error, STATUS_INPUT, "no cells, within which the field is interpolated");
+    }
     NEW_SCRATCH(double, spacing, cells->node_count, error);
     NEW_SCRATCH(int64_t, cell, count, error);
     RETURN_IF_ERROR(field_spacing(cells, spacing, error));

@@ -58,8 +58,10 @@ static enum status find_nearest(const struct scattered_fit *fit, const double *x
     for (int a = 0; a < fit->dim; a++) {
         at[a] = x[a] / fit->unit;
     }
-    return point_grid_nearest(&fit->grid, at, fit->dim == 2 ? 12 : MOST_NEIGHBOURS,
-                              fit->paths != NULL ? is_usable : NULL, fit->paths, nearest, error);
+    return fail_in(error,
+                   point_grid_nearest(&fit->grid, at, fit->dim == 2 ? 12 : MOST_NEIGHBOURS,
+                                      fit->paths != NULL ? is_usable : NULL, fit->paths, nearest, error),
+                   "interpolation of a table");
 }
 
 /* Mean spacing of the points around row `row`, in the table's unit: each of n points within a radius r has

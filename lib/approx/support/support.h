@@ -60,8 +60,8 @@ struct support_space {
     struct visibility visibility; /* where neighbours must be visible through the cells */
 };
 
-/* Fill in a space, which stays where it is. radius[node_count], m. Errors: STATUS_INPUT for cells that share
- * a face with more than one other. */
+/* Fill in a space, which must not be moved or copied: its visibility points to its grid. radius[node_count],
+ * m. Errors: STATUS_INPUT for cells that share a face with more than one other. */
 MUST_CHECK enum status support_space_build(const struct support_options *options, const struct cells *cells,
                                            const double *radius, struct support_space *space,
                                            struct error *error);

@@ -27,8 +27,9 @@ struct visibility {
     int32_t *across;          /* cells_across */
     int64_t *star_ptr;        /* node_count + 1: the cells at each node (CSR) */
     int32_t *star;
-    double *hidden_from; /* node_count * 2^dim: distance, m, from which on facets of the boundary may hide the
-                            node from a point, for each sector of directions; infinite: none does */
+    double *hidden_from; /* node_count * 2^dim: distance, m, from which on facets of the boundary or of an
+                            interface may hide the node from a point on their side, for each sector of
+                            directions; infinite: none does */
 };
 
 /* Errors: STATUS_INPUT for cells that share a face with more than one other; STATUS_SYSTEM (memory). */
@@ -41,10 +42,11 @@ MUST_CHECK enum status visibility_build_cells(const struct cells *cells, struct 
 void visibility_free(struct visibility *visibility);
 
 /* The cells that contain points. All members zero: not known; they are searched for. A point outside of all
- * cells sees what the nearest place in a cell sees; a point far from all cells sees all nodes near it. */
+ * cells sees what the nearest place in a cell sees; a point far from all cells sees all nodes near it, of the
+ * first side if there are sides. */
 struct visibility_places {
     bool nodes;          /* point p is node p; */
-    const int32_t *cell; /* else, unless NULL: one cell for each row of points, -1: none; */
+    const int32_t *cell; /* else, unless NULL: one cell for each row of points, -1 alone: none; */
     const int64_t *ptr;  /* or, unless NULL: the cells of row r are cell[ptr[r]] to before cell[ptr[r + 1]] */
     int64_t points_per_row; /* of the first long_rows rows; the others have one point */
     int64_t long_rows;      /* 0: all rows */

@@ -112,55 +112,53 @@ static double take_number(struct json *json)
     size_t length = strspn(json->at, "0123456789+-.eE");
     memcpy(word, json->at, length < sizeof word ? length : 0);
     double value = strtod(word, &end);
-    if (length == 0 || *end != '\0' || !isfinite(value)) {
+    if (length == 0 || length >= sizeof word || *end != '\0' || !isfinite(value)) {
         json_fail(json, "a finite number is expected");
     }
     json->at += length;
     return value;
 }
 
-static char *take_word(struct json *json)
+static void take_word(struct json *json)
 {
-    static char words[][6] = {"true", "false", "null"};
+    static const char *const words[] = {"true", "false", "null"};
     for (int i = 0; i < 3; i++) {
         size_t length = strlen(words[i]);
         if (strncmp(json->at, words[i], length) == 0 && !isalnum((unsigned char)json->at[length])) {
             json->at += length;
-            return words[i];
+            return;
         }
     }
     json_fail(json, "a word that is neither true, false nor null");
-    return words[2];
 }
 
-static void give(struct json *json, char *text, double number)
+static void give(struct json *json, enum json_kind kind, char *text, double number)
 {
     if (json->status == STATUS_OK) {
-        json->take(json, text, number);
+        json->take(json, kind, text, number);
     }
 }
 
 static void read_value(struct json *json, int depth)
 {
-    char c = peek(json), *text;
+    char c = peek(json);
     size_t length = strlen(json->path);
     if (c == '"') {
-        text = take_string(json);
-        give(json, text, NAN);
+        char *text = take_string(json);
+        give(json, JSON_STRING, text, 0);
     } else if (isalpha((unsigned char)c)) {
-        text = take_word(json);
-        give(json, text, NAN);
+        take_word(json);
+        give(json, JSON_WORD, NULL, 0);
     } else if (c != '{' && c != '[') {
         double number = take_number(json);
-        give(json, NULL, number);
+        give(json, JSON_NUMBER, NULL, number);
     } else if (depth == DEEPEST) {
         json_fail(json, "values within more than 64 others");
     } else {
         json->at++;
         for (bool more = !take(json, c == '{' ? '}' : ']'); more && json->status == STATUS_OK;) {
-            if (c == '{') {
-                text_append(json->path, sizeof json->path, "%s%s", length > 0 ? "." : "", take_string(json));
-            }
+            text_append(json->path, sizeof json->path, "%s%s", c == '{' && length > 0 ? "." : "",
+                        c == '{' ? take_string(json) : "[]");
             if (c == '{' && !take(json, ':')) {
                 json_fail(json, "':' is expected behind a key");
             }
@@ -173,7 +171,7 @@ static void read_value(struct json *json, int depth)
             }
         }
         if (c == '{') {
-            give(json, NULL, NAN);
+            give(json, JSON_END, NULL, 0);
         }
     }
 }

@@ -1,19 +1,22 @@
-/* JSON (RFC 8259), passed over value by value. */
+/* JSON (RFC 8259), whose values are given one after the other. */
 #pragma once
 
 #include "base/status.h"
+
+/* What is given: text of a string, as UTF-8 that stays where it is; a finite number; true, false or null; the
+ * end of an object. */
+enum json_kind { JSON_STRING, JSON_NUMBER, JSON_WORD, JSON_END };
 
 /* A text that is being read. After the first failure nothing more is given. */
 struct json {
     char *at; /* ends with a NUL; strings are decoded in place */
     enum status status;
     struct error *error;
-    int64_t line;   /* of `at`, from 1 */
-    char path[256]; /* of the value: "markups.position", the keys of the objects that hold it; cut when longer
-                     */
-    /* Called with each string, or true, false or null, as UTF-8 that stays where it is; with each finite
-     * number (text NULL); and at the end of each object (text NULL, NAN). */
-    void (*take)(struct json *json, char *text, double number);
+    int64_t line; /* of `at`, from 1 */
+    /* Of the value: "markups[].position[]", the keys of the objects that hold it and [] for each array; cut
+     * when longer. */
+    char path[256];
+    void (*take)(struct json *json, enum json_kind kind, char *text, double number);
     void *context;
 };
 

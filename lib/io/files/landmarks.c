@@ -67,32 +67,37 @@ static bool is_text(const char *text, const char *wanted)
     return text != NULL && strcmp(text, wanted) == 0;
 }
 
-static void take_value(struct json *json, char *text, double number)
+static void take_value(struct json *json, enum json_kind kind, char *text, double number)
 {
     struct markup *markup = json->context;
-    bool ends = text == NULL && isnan(number);
-    if (is_text(json->path, "markups") && ends) {
+    if (is_text(json->path, "markups[]") && kind == JSON_END) {
         end_markup(markup);
-    } else if (is_text(json->path, "markups.coordinateSystem")) {
+    } else if (is_text(json->path, "markups[].coordinateSystem")) {
         markup->sign = is_text(text, "RAS") ? 1 : -1;
         if (markup->sign < 0 && !is_text(text, "LPS")) {
             json_fail(json, "coordinateSystem is neither LPS nor RAS");
         }
-    } else if (is_text(json->path, "markups.coordinateUnits")) {
+    } else if (strncmp(json->path, "markups[].coordinateUnits", 25) == 0) { /* a text, or a list */
         if (!markup->has_units && !is_text(text, "mm")) {
             json_fail(json, "coordinateUnits is not mm");
         }
         markup->has_units = true;
-    } else if (is_text(json->path, "markups.controlPoints") && ends) {
+    } else if (is_text(json->path, "markups[].controlPoints[]") && kind == JSON_END) {
         end_point(markup, json);
-    } else if (is_text(json->path, "markups.controlPoints.label")) {
+    } else if (is_text(json->path, "markups[].controlPoints[].label")) {
         markup->label = text;
-    } else if (is_text(json->path, "markups.controlPoints.positionStatus")) {
+        if (kind != JSON_STRING) {
+            json_fail(json, "a string is expected");
+        }
+    } else if (is_text(json->path, "markups[].controlPoints[].positionStatus")) {
         markup->is_undefined = !is_text(text, "defined");
-    } else if (is_text(json->path, "markups.controlPoints.position") && text == NULL && !ends) {
+    } else if (strncmp(json->path, "markups[].controlPoints[].position[]", 36) == 0) {
         markup->x[markup->count < 3 ? markup->count : 2] = number;
         markup->count++;
         markup->line = json->line;
+        if (kind != JSON_NUMBER || json->path[36] != '\0') {
+            json_fail(json, "a finite number is expected");
+        }
     }
 }
 

@@ -215,7 +215,7 @@ int64_t input_add_group(struct msh_reader *r, int dim, const char *text, int64_t
 int64_t input_group(struct msh_reader *r, int dim, const char *text);
 
 /* A set or surface takes a member from another one: they may take so many for each byte of the file. */
-enum { MEMBERS_PER_BYTE = 3 };
+enum { MEMBERS_PER_BYTE = 8 };
 void input_take_member(struct msh_reader *r);
 
 /* Note what of the file is left out, each thing once. */

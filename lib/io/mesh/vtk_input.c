@@ -64,7 +64,7 @@ void vtk_fill_text(struct msh_reader *r, struct vtk_array *array, const struct n
             return;
         }
         array->value[i] = input_real(r, array->name, word, length);
-        if (whole && array->value[i] != rint(array->value[i])) {
+        if (whole && !(isfinite(array->value[i]) && array->value[i] == rint(array->value[i]))) {
             msh_fail(r, "%s: '%.*s' is not a whole number", array->name, length < 64 ? (int)length : 64,
                      word);
         }

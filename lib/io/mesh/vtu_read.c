@@ -232,7 +232,7 @@ static void read_appended(struct vtu *u)
         }
         u->at = u->appended[i];
         if (u->at.offset >= end) {
-            msh_fail(r, "%s: its offset %jd is behind the end of the file, or that of another array, too",
+            msh_fail(r, "%s: its offset %jd is behind the end of the file, or is also that of another array",
                      u->at.array.name, u->at.offset);
         } else {
             read_binary(u, data + u->at.offset, data + end, base64);

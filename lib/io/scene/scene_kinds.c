@@ -86,7 +86,8 @@ static enum status check_contact(const struct place *place, struct scene *scene)
     return STATUS_OK;
 }
 
-/* A pressure is a value, or that of a fluid, which grows with the depth below its level. */
+/* The kind of a load, by its section; a pressure is a value, or that of a fluid, which grows with the depth
+ * below its level. */
 static enum status check_load(const struct place *place, struct scene *scene)
 {
     static const char *const names[] = {

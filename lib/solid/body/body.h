@@ -200,5 +200,5 @@ struct inelliptic body_inelliptic(struct body *body);
  * with `rest` at F = I, as sum_q w W''(y (x) grad phi), the second derivative of the energy along the
  * rank-one change of F that is stiffest, y = F^-T grad phi; at rest sum_q w (lambda + 2 mu) |grad phi|^2. The
  * neo-Hookean formula serves all materials. Of smoothed cells phi are the linear shape functions, so that the
- * bound holds about. A limit of the bulk modulus (body_limit_bulk) counts. Collective. */
+ * bound holds approximately. A limit of the bulk modulus (body_limit_bulk) counts. Collective. */
 void body_diagonal(struct body *body, bool rest, double *stiffness);

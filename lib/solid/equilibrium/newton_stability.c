@@ -110,7 +110,7 @@ void newton_note_leaving(struct newton *n)
         }
         double way = newton_longest(n, n->scaled, &stability->left_node);
         stability->left = way > far_by_error * n->nearest_error * newton_longest(n, n->nearest, NULL);
-        stability->left_load = statics_load_share(n->system, n->load);
+        stability->left_load = stability->left ? statics_load_share(n->system, n->load) : 0.0;
     }
     if (n->corrections == 0 || n->report->error < n->nearest_error) {
         n->nearest_error = is_near(n) ? n->report->error : INFINITY;
