@@ -138,7 +138,7 @@ begin_from_coarse() {
     cloud -d 3 -k regular -n 3 --box 0,0.1,0,0.1,0,0.1 | shapefn > cube.mts 2> note
     pressed_cube zmin zmax -0.005 > cube.scene
     mtled -q -o cube.dat cube.scene cube.mts
-    refused 2 "cube.dat: u has 3 columns in 3D, where 2D is wanted" mtled -s cube.dat push.scene fine.mts
+    refused 2 "cube.dat: u has 3 columns in 3D, where 2 in 2D are wanted" mtled -s cube.dat push.scene fine.mts
     cloud -d 2 -k regular -n 4 --box 0,0.1,0,0.05 | shapefn > half.mts 2> note
     mtled -q -o half.dat push.scene half.mts
     refused 2 "--start: half.dat: node " mtled -s half.dat push.scene fine.mts
