@@ -93,4 +93,8 @@ SCENE
     run -143 --separate-stderr bash -c 'ulimit -f 4; mtled -c run.ckpt run.scene table.mts > /dev/null & worked $! 10; kill -TERM $!; wait $!'
     [[ $stderr == *"no checkpoint: run.ckpt: cannot write: File too large"* ]]
     cmp run.ckpt kept
+    [ ! -e run.ckpt.part ]
+    printf torn > run.ckpt.part # of a run that was killed as it wrote
+    mtled -q -c run.ckpt run.scene table.mts 2> said > again.dat
+    [ -z "$(find . -name 'run.ckpt*')" ]
 }

@@ -2,7 +2,9 @@
 
 #include "base/processor.h"
 
+#include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 /* ---- signals: the run ends after the current step ---- */
 
@@ -156,7 +158,18 @@ static void put_view(struct run *run, const struct progress *progress, struct st
     tool_put(run->tool, stream, "u.last", TYPE_F8, nodes, dim, "unit=m", field);
 }
 
-/* Replace the file as a whole: whenever the program or the machine stops, it is complete. */
+static void remove_part(const char *file)
+{
+    SCRATCH char *part = NULL;
+    if (asprintf(&part, "%s.part", file) < 0) {
+        part = NULL;
+    } else {
+        unlink(part);
+    }
+}
+
+/* Replace the file as a whole, by way of FILE.part: whenever the program or the machine stops, it is
+ * complete. */
 static enum status write_now(struct run *run, const struct progress *progress, struct error *error)
 {
     struct run_checkpoint *checkpoint = &run->checkpoint;
@@ -168,10 +181,15 @@ static enum status write_now(struct run *run, const struct progress *progress, s
     RETURN_IF_ERROR(checkpoint_begin(&stream, &checkpoint->identity, progress->step, &state, error));
     RETURN_IF_ERROR(progress->state(progress->run, &state, error));
     RETURN_IF_ERROR(visit_own(run, &state, error));
-    RETURN_IF_ERROR(output_open(&output, checkpoint->file, false, error));
-    RETURN_IF_ERROR(output_end(&output, stream_write(&stream, output.file, false, error), error));
-    checkpoint->is_there = true;
-    return STATUS_OK;
+    enum status status = output_open(&output, checkpoint->file, true, error);
+    if (status == STATUS_OK) {
+        status = output_end(&output, stream_write(&stream, output.file, false, error), error);
+    }
+    checkpoint->is_there = checkpoint->is_there || status == STATUS_OK;
+    if (status != STATUS_OK) {
+        remove_part(checkpoint->file);
+    }
+    return status;
 }
 
 /* Write a checkpoint, by the first process. Returns a failure that must end the run. */

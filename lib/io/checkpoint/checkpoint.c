@@ -184,7 +184,7 @@ static enum status check_regular(const char *file, struct error *error)
 
 enum status checkpoint_remove(const char *file, struct error *error)
 {
-    static const char *const endings[] = {".frames", ""};
+    static const char *const endings[] = {".part", ".frames", ""};
     for (size_t i = 0; i < sizeof endings / sizeof *endings; i++) {
         SCRATCH char *name = NULL;
         if (asprintf(&name, "%s%s", file, endings[i]) < 0) {

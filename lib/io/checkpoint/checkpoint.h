@@ -27,7 +27,8 @@ uint32_t checkpoint_identify_input(const struct stream *input);
 MUST_CHECK enum status checkpoint_begin(struct stream *stream, const struct checkpoint_identity *identity,
                                         int64_t step, struct state *state, struct error *error);
 
-/* Remove FILE and FILE.frames, as far as they exist. */
+/* Remove FILE, FILE.frames and FILE.part, which a run that was killed as it wrote leaves, as far as they
+ * exist. */
 MUST_CHECK enum status checkpoint_remove(const char *file, struct error *error);
 
 /* Read FILE, if it exists. STATUS_INPUT if it is damaged, or of another run. */
