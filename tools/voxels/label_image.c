@@ -202,9 +202,6 @@ static void set_space(const struct tool *tool, struct image *image, struct label
         tool_fail(tool, STATUS_INPUT, "the image is one line of voxels");
     }
     labels->dim = flats == 1 ? 2 : 3;
-    if (flats == 1 && image_axis_across(image, image->size[0] == 1 ? 0 : image->size[1] == 1 ? 1 : 2) < 0) {
-        tool_fail(tool, STATUS_INPUT, "the slice is oblique to the axes of the world: resample it first");
-    }
     image_to_body(tool, image, labels->dim, &axes);
     labels->across = image->to_world[2][3];
     for (int d = 0; d < 3; d++) {

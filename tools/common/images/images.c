@@ -156,10 +156,13 @@ void image_to_body(const struct tool *tool, struct image *image, int dim, struct
     }
     int flat = image->size[2] == 1 ? 2 : image->size[1] == 1 ? 1 : 0;
     int a = flat == 0 ? 1 : 0, b = flat == 2 ? 1 : 2, across = image_axis_across(image, flat);
-    if (image->size[flat] > 1 || across < 0) {
+    if (image->size[flat] > 1) {
         tool_fail(tool, STATUS_INPUT,
-                  "the body is in 2D: it goes with an image of one slice across a world axis, not %s",
-                  image->size[flat] == 1 ? "an oblique one" : "one of several slices");
+                  "the body is in 2D: it goes with an image of one slice across a world axis, not one of "
+                  "several slices");
+    }
+    if (across < 0) {
+        tool_fail(tool, STATUS_INPUT, "the slice is oblique to the axes of the world: resample it first");
     }
     *axes = (struct image_axes){{across == 0 ? 1 : 0, across == 2 ? 1 : 2, across}, {a, b, flat}};
     reorder(image, axes, false);
