@@ -44,6 +44,7 @@ for i in range(1, 22):
     for form in ("nii.gz", "mha") if i % 2 else ("nii", "nrrd"):
         b = nib.load(f"{i}.{form}.nii")
         assert b.get_data_dtype() == a.get_data_dtype().newbyteorder("<") and np.array_equal(np.asarray(a.dataobj), np.asarray(b.dataobj)), (i, form)
+        # both are of single precision, the second by way of a quaternion
         assert np.allclose(a.affine, b.affine, atol=1e-6) and np.allclose(b.get_qform(), b.affine, atol=1e-3), (i, form)
         assert b.header["descrip"] == b"by_hand", (i, form)
         if form.startswith("nii"):

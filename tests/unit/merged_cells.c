@@ -126,7 +126,7 @@ TEST_IN_EACH_DIM(flatness)
     measure(dim, 1e-4 * sample_size, thick);
     measure(dim, 1e-7 * sample_size, thin);
     for (int k = 0; k < 3; k++) {
-        NEAR_TO(thin[k], thick[k], 0.02 * thick[k]);
+        NEAR_TO(thin[k], thick[k], (k == 1 ? 0.02 : 0.01) * thick[k]); /* the bound is by linear functions */
     }
 }
 
