@@ -5,7 +5,7 @@
 set -u -o pipefail
 cd "$(dirname "$0")/.." || exit 3
 found=0
-mapfile -t sources < <(printf '%s\n' lib/*/*.c lib/*/*/*.c tools/*.c tools/{common,mtled,sample,tovtk,voxels,warp}/*.c tools/common/*/*.c)
+mapfile -t sources < <(find lib tools -name '*.c' -not -path 'tools/mpi/*' | LC_ALL=C sort)
 mapfile -t scripts < <(find . -name '*.sh' -not -path './build*'; echo .ci/run)
 
 tidy() {

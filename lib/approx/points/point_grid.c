@@ -236,9 +236,9 @@ enum status point_grid_nearest(const struct point_grid *grid, const double *x, i
                                struct error *error)
 {
     FREED_BY(index_list_free) struct index_list near = {0};
-    for (double factor = 1.0; factor < 0x1p500; factor *= 2.0) {
+    for (int doubled = 0; doubled < 500; doubled++) {
         near.count = nearest->count = 0;
-        RETURN_IF_ERROR(point_grid_query(grid, x, factor, &near, error));
+        RETURN_IF_ERROR(point_grid_query(grid, x, ldexp(1.0, doubled), &near, error));
         for (int64_t i = 0; i < near.count; i++) {
             if (accepts == NULL || accepts(context, near.index[i])) {
                 insert(nearest, most, near.index[i],

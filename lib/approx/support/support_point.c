@@ -143,7 +143,7 @@ enum status support_find(const struct search *search, int64_t p, struct worker *
     const struct visibility *visibility = search->visibility;
     bool sided = visibility != NULL && visibility->cell_side != NULL, good = false;
     int64_t first = worker->list.count;
-    for (int whole = 0; whole <= sided && !good; whole++) {
+    for (int whole = 0; whole <= (sided ? 1 : 0) && !good; whole++) {
         if (visibility != NULL) {
             RETURN_IF_ERROR(visibility_begin(visibility, &search->places, p,
                                              search->x + p * search->grid->dim, whole == 1,
