@@ -23,8 +23,8 @@ static void measure(struct strained *s, bool coarse)
     preconditioner_set_mass(&s->preconditioner, mass);
     int64_t evaluations = 0;
     GOOD(preconditioner_measure(&s->preconditioner, &s->l.system, s->u, &evaluations, &error));
-    assert_int_equal(evaluations, coarse);
-    (void)system_residual(&s->l.system, s->u, s->residual);
+    assert_int_equal(evaluations, 0);
+    preconditioner_follow(&s->preconditioner, &s->l.system);
 }
 
 /* The displacement of the first side is 0. */
@@ -254,7 +254,7 @@ TEST(stiffness_is_assembled)
     }
 }
 
-/* A strained bar against a plate that it has just met: the contact nodes are not counted in yet. */
+/* A strained bar against a plate that it has just met. */
 struct pressed {
     struct strained s;
     struct boundary_averages averages;
@@ -294,6 +294,8 @@ TEST(contacts_are_followed)
     press_bar(&p);
     assert_true(s->preconditioner.has_rigid_mode);
     double alone[2];
+    memset(s->preconditioner.along, 0, (size_t)s->preconditioner.contact_node_count * sizeof(double));
+    preconditioner_factorise(&s->preconditioner, &s->l.system);
     for (int followed = 0; followed < 2; followed++) {
         if (followed) {
             preconditioner_follow(&s->preconditioner, &s->l.system);

@@ -73,8 +73,10 @@ void contact_between_react(struct contact *contact, double *force);
 double contact_between_sign(const struct contact *contact);
 bool contact_between_led(const struct contact *contact, int64_t p);
 
-/* Let contact_between_part refer to the places opposite the points at the last evaluation. */
+/* Let contact_between_part refer to the places opposite the points at the last evaluation; and whether these
+ * lie on other facets than those it refers to. */
 void contact_between_take(struct contact *contact);
+bool contact_between_moves(const struct contact *contact);
 
 /* The gap of contact node a varies with the mean of the field there minus a weighted sum of the field at
  * opposite corners. Gives corner i of these, a row of opposite.rows, and its weight; false behind the last

@@ -61,6 +61,16 @@ void contact_between_take(struct contact *contact)
     }
 }
 
+bool contact_between_moves(const struct contact *contact)
+{
+    const struct contact_between *between = contact->between;
+    bool moves = false;
+    for (int64_t p = 0; p < contact->count && between != NULL && !moves; p++) {
+        moves = contact->view[p].searched && between->taken_facet[p] != between->view[p].facet + 1;
+    }
+    return moves;
+}
+
 bool contact_between_part(const struct contact *contact, int64_t a, int64_t i, int64_t *corner,
                           double *weight)
 {

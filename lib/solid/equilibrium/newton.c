@@ -23,10 +23,9 @@ static enum status measure(struct newton *n, struct error *error)
     system_relaxation_mass(n->system, false, n->scaled);
     preconditioner_set_mass(p, n->scaled);
     RETURN_IF_ERROR(preconditioner_measure(p, n->system, n->u, &n->report->force_evaluations, error));
-    n->cost = n->report->force_evaluations - before;
+    n->cost = 1 + n->report->force_evaluations - before;
     n->excess = 0.0;
     n->usual = n->lowest = INFINITY;
-    (void)newton_evaluate(n, n->u, &n->at_u);
     preconditioner_follow(p, n->system);
     return STATUS_OK;
 }
@@ -124,6 +123,7 @@ static enum status begin(struct newton *n, struct error *error)
         n->options->frame(n->options->context, 0, 0.0, n->u);
     }
     constraint_project(&n->preconditioner.constraint, system->factor, n->u);
+    (void)newton_evaluate(n, n->u, &n->at_u);
     n->radius = fmin(n->spacing, n->longest_step);
     n->load_change = n->most_change;
     n->hold = statics_load_to_hold(n->options, 0);

@@ -48,10 +48,12 @@ void newton_augment(struct newton *n)
         system_augment_contacts(n->system);
     }
     bool stiffer = system_stiffen(n->system);
-    if (stiffer || pressures || n->system->contact_count > 0) {
+    if (stiffer || pressures) {
         (void)newton_evaluate(n, n->u, &n->at_u);
-        preconditioner_follow(&n->preconditioner, n->system);
+    } else {
+        newton_touch(n, n->u, &n->at_u);
     }
+    preconditioner_follow(&n->preconditioner, n->system);
 }
 
 /* Some units in the last place of positions, m. */

@@ -39,14 +39,14 @@ static enum status sum_chunk(const struct preconditioner *p, const struct body *
     return STATUS_OK;
 }
 
-/* (*sums)[chunks][size * size]: of the process's own chunks, from first[] on. */
+/* (*sums)[chunks][size * size], lower triangles: of the process's own chunks, from first[] on. */
 static enum status sum_nodes(const struct preconditioner *p, const struct body *body, struct chunks *chunks,
                              int64_t **first, double **sums, struct error *error)
 {
     const struct ranks *ranks = body->share.ranks;
     int64_t entries = p->size * p->size;
     struct first_failure failure = {STATUS_OK};
-    RETURN_IF_ERROR(NEW_ARRAY(sums, chunks->count * entries, error));
+    RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(sums, chunks->count * entries, error));
     RETURN_IF_ERROR(ranks_share(ranks, chunks->count, NULL, first, error));
 #pragma omp parallel for schedule(dynamic, 1) num_threads(chunks->threads)
     for (int64_t c = (*first)[ranks_rank(ranks)]; c < (*first)[ranks_rank(ranks) + 1]; c++) {
@@ -83,9 +83,11 @@ enum status preconditioner_assemble(struct preconditioner *p, struct solid_syste
     chunks.count = chunks.count < MOST_SUMS ? chunks.count : MOST_SUMS;
     RETURN_IF_ERROR(ranks_agree(ranks, sum_nodes(p, &system->body, &chunks, &first, &sums, error), error));
     ranks_gather(ranks, sums, (size_t)entries * sizeof *sums, first);
-    memcpy(p->body, sums, (size_t)entries * sizeof *sums);
-    for (int64_t c = 1; c < chunks.count; c++) {
-        dense_add_row(entries, 1.0, sums + c * entries, p->body);
+    for (int64_t i = 0; i < p->size; i++) {
+        memcpy(p->body + i * p->size, sums + i * p->size, (size_t)(i + 1) * sizeof *sums);
+        for (int64_t c = 1; c < chunks.count; c++) {
+            dense_add_row(i + 1, 1.0, sums + c * entries + i * p->size, p->body + i * p->size);
+        }
     }
     for (int64_t n = 0; n < p->node_count; n++) {
         mean += p->stiffness[n] / (double)p->node_count;

@@ -77,10 +77,10 @@ enum status preconditioner_build(struct solid_system *system, bool coarse, struc
     RETURN_IF_ERROR(leave_out_held(system, &p->coarse, error));
     p->size = p->coarse.count * p->dim;
     cells = p->size * p->size;
-    RETURN_IF_ERROR(NEW_ARRAY(&p->active, p->contact_node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&p->along, p->contact_node_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&p->normal, p->contact_node_count * p->dim, error));
     if (system_has_friction(system)) {
-        RETURN_IF_ERROR(NEW_ARRAY(&p->sticks, p->contact_node_count, error));
+        RETURN_IF_ERROR(NEW_ARRAY(&p->across, p->contact_node_count, error));
     }
     RETURN_IF_ERROR(NEW_ARRAY(&p->body, cells, error));
     RETURN_IF_ERROR(NEW_ARRAY(&p->weight, p->coarse.count * p->coarse.count, error));
@@ -101,8 +101,8 @@ void preconditioner_free(struct preconditioner *p)
     inverse_factor_free(&p->factor);
     stiffness_factor_free(&p->elements);
     coarse_rows_free(&p->rows);
-    FREE_ALL(p->vector, p->force, p->at_rest, p->rotation, p->stiffness, p->mass, p->body, p->active,
-             p->normal, p->sticks, p->weight, p->stiffness_factor, p->amount, p->contacts);
+    FREE_ALL(p->vector, p->force, p->at_rest, p->rotation, p->stiffness, p->mass, p->body, p->along,
+             p->normal, p->across, p->weight, p->stiffness_factor, p->amount, p->contacts);
     *p = (struct preconditioner){0};
 }
 
@@ -219,10 +219,10 @@ enum status preconditioner_state(struct preconditioner *p, const struct state *s
         {"body", STATE_NUMBERS, p->body, p->size * p->size},
         {"elements", STATE_NUMBERS, p->elements.body, p->elements.factor.size},
         {"rotation", STATE_NUMBERS, p->rotation, p->rotation != NULL ? p->node_count * p->dim * p->dim : 0},
-        {"active", STATE_FLAGS, p->active, p->contact_node_count},
+        {"along", STATE_NUMBERS, p->along, p->contact_node_count},
         {"normal", STATE_NUMBERS, p->normal, p->contact_node_count * p->dim},
     };
-    const struct state_value sticks = {"sticks", STATE_NUMBERS, p->sticks, p->contact_node_count};
+    const struct state_value across = {"across", STATE_NUMBERS, p->across, p->contact_node_count};
     RETURN_IF_ERROR(state_visit(state, "preconditioner", values, sizeof values / sizeof *values, error));
-    return p->sticks != NULL ? state_visit(state, "preconditioner", &sticks, 1, error) : STATUS_OK;
+    return p->across != NULL ? state_visit(state, "preconditioner", &across, 1, error) : STATUS_OK;
 }

@@ -41,11 +41,13 @@ struct preconditioner {
     /* coarse.count * coarse.count: Z^T D Z with D = `stiffness`, the same in each direction. */
     double *weight;
     bool has_rigid_mode; /* the conditions leave the body free to move as a whole */
-    bool *active;        /* contact nodes of all contacts: those that A counts in (NULL: none), */
-    double *normal;      /* contact_node_count * dim: and the surface's normals there, */
-    double *sticks; /* contact_node_count: and the share that friction holds; NULL: there is no friction */
     int64_t contact_node_count;
+    /* What A counts in at the contact nodes of all contacts: contact_node_count stiffnesses along the
+     * surface's normals, dim times as many for these, and stiffnesses across, of friction (NULL: there is
+     * none), N/m (2D: N/m2). */
+    double *along, *normal, *across;
     struct coarse_rows rows; /* scratch */
+    bool measured;           /* the stiffness is newer than its factor */
     bool uses_coarse;        /* it exists; else M = B^-1 */
     double *amount;          /* size: scratch */
 };
@@ -59,15 +61,16 @@ void preconditioner_free(struct preconditioner *preconditioner);
  * preconditioner_measure comes next. */
 void preconditioner_set_mass(struct preconditioner *preconditioner, const double *stiffness);
 
-/* Take the stiffness along the coarse fields at u: of smoothed cells it is assembled, from one evaluation of
- * the body; else it is measured by differences, from size + 1. Their number is added to *evaluations, and the
- * body's last evaluation is not the one before. A follows the contacts. */
+/* Take the stiffness along the coarse fields at u, where the body was evaluated last: of smoothed cells it is
+ * assembled; else it is measured by differences, from size + 2 evaluations, whose number is added to
+ * *evaluations. preconditioner_follow comes next. */
 MUST_CHECK enum status preconditioner_measure(struct preconditioner *preconditioner,
                                               struct solid_system *system, const double *u,
                                               int64_t *evaluations, struct error *error);
 
-/* Let A follow the contacts' last evaluation and penalties: nodes that are pressed count in; of a body with
- * free rigid-body modes all do, as it may come to rest on any. */
+/* Let A follow the stiffness that was measured, and the contacts' last evaluation where that changes their
+ * stiffness or what is opposite: nodes that are pressed count in; of a body with free rigid-body modes all
+ * do, as it may come to rest on any. */
 void preconditioner_follow(struct preconditioner *preconditioner, const struct solid_system *system);
 
 /* acceleration = M^-1 force. */

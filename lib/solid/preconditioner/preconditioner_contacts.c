@@ -47,43 +47,72 @@ static void take_fields(const struct contact *contact, int64_t a, const double *
 
 void preconditioner_add_contacts(struct preconditioner *p, const struct solid_system *system, double *matrix)
 {
-    int64_t dim = p->dim, at = 0;
+    int64_t at = 0;
     for (int64_t c = 0; c < system->contact_count; c++) {
         const struct contact *contact = &system->contacts[c];
-        const struct boundary_averages *averages = contact_nodes(contact);
-        for (int64_t a = 0; a < averages->count; a++, at++) {
-            double sticks = p->sticks != NULL ? p->sticks[at] : 0.0;
-            if (!p->active[at] && sticks == 0.0) {
+        for (int64_t a = 0; a < contact_nodes(contact)->count; a++, at++) {
+            double along = p->along[at], across = p->across != NULL ? p->across[at] : 0.0;
+            if (along == 0.0 && across == 0.0) {
                 continue;
             }
-            double stiffness = contact_node(contact, a).stiffness * averages->area[a];
-            take_fields(contact, a, p->normal + at * dim, &p->rows);
-            if (p->active[at]) {
-                coarse_rows_square(&p->rows, 0, stiffness, matrix);
-            }
-            for (int i = 1; i <= dim && sticks > 0.0; i++) {
-                coarse_rows_square(&p->rows, i, sticks * stiffness, matrix);
+            take_fields(contact, a, p->normal + at * p->dim, &p->rows);
+            coarse_rows_square(&p->rows, 0, along, matrix);
+            for (int i = 1; i <= p->dim && across > 0.0; i++) {
+                coarse_rows_square(&p->rows, i, across, matrix);
             }
         }
     }
 }
 
+/* Store a value; returns whether it was another. */
+static bool changes(double *value, double to)
+{
+    bool other = *value != to;
+    *value = to;
+    return other;
+}
+
+/* Take the stiffness of the nodes of a contact, the first of which has number `at`. Returns whether it is
+ * another. */
+static bool take_stiffness(struct preconditioner *p, const struct contact *contact, int64_t at)
+{
+    bool other = false;
+    for (int64_t a = 0; a < contact_nodes(contact)->count; a++, at++) {
+        struct contact_node node = contact_node(contact, a);
+        double stiffness = node.stiffness * contact_nodes(contact)->area[a];
+        bool counts = node.pressure > 0.0 || p->has_rigid_mode;
+        other = changes(&p->along[at], counts ? stiffness : 0.0) || other;
+        if (contact->friction != NULL) {
+            double sticks = fmax(node.sticks, p->has_rigid_mode ? least_sticks : 0.0);
+            other = changes(&p->across[at], sticks * stiffness) || other;
+        }
+    }
+    return other;
+}
+
+static void take_normals(struct preconditioner *p, const struct contact *contact, int64_t at)
+{
+    for (int64_t a = 0; a < contact_nodes(contact)->count; a++, at++) {
+        memcpy(p->normal + at * p->dim, contact_node(contact, a).normal, (size_t)p->dim * sizeof *p->normal);
+    }
+}
+
 void preconditioner_follow(struct preconditioner *p, const struct solid_system *system)
 {
+    bool other = p->measured;
     int64_t at = 0;
     for (int64_t c = 0; c < system->contact_count; c++) {
-        struct contact *contact = &system->contacts[c];
-        for (int64_t a = 0; a < contact_nodes(contact)->count; a++, at++) {
-            struct contact_node node = contact_node(contact, a);
-            p->active[at] = node.pressure > 0.0 || p->has_rigid_mode;
-            memcpy(p->normal + at * contact->dim, node.normal, (size_t)contact->dim * sizeof *node.normal);
-            if (contact->friction != NULL) {
-                p->sticks[at] = fmax(node.sticks, p->has_rigid_mode ? least_sticks : 0.0);
-            }
-        }
-        contact_between_take(contact);
+        other = take_stiffness(p, &system->contacts[c], at) || other;
+        other = contact_between_moves(&system->contacts[c]) || other;
+        at += contact_nodes(&system->contacts[c])->count;
     }
-    if (p->size > 0 && system->contact_count > 0) {
+    at = 0;
+    for (int64_t c = 0; c < system->contact_count && other; c++) {
+        take_normals(p, &system->contacts[c], at);
+        contact_between_take(&system->contacts[c]);
+        at += contact_nodes(&system->contacts[c])->count;
+    }
+    if (other) {
         preconditioner_factorise(p, system);
     }
 }

@@ -38,6 +38,7 @@ static void sum_stiffness(const struct preconditioner *p, double keep, double *m
 void preconditioner_factorise(struct preconditioner *p, const struct solid_system *system)
 {
     double keep = kept;
+    p->measured = false;
     if (p->elements.body != NULL) {
         stiffness_factor_make(&p->elements, p->dim, p->stiffness);
         return;
@@ -55,14 +56,16 @@ void preconditioner_factorise(struct preconditioner *p, const struct solid_syste
     }
 }
 
-/* The stiffness of the body, by the change of its forces at u along each field. */
+/* The stiffness of the body, by the change of its forces at u along each field; u is evaluated last. */
 static enum status measure_by_differences(struct preconditioner *p, struct solid_system *system,
-                                          const double *u, const double *at_u, struct error *error)
+                                          const double *u, struct error *error)
 {
     int64_t values = p->node_count * p->dim;
     double epsilon = DIFFERENCE_STEP * system_node_spacing(system), *one = p->amount;
+    NEW_SCRATCH(double, at_u, values, error);
     NEW_SCRATCH(double, moved, values, error);
     NEW_SCRATCH(double, force, values, error);
+    system_resist(system, u, at_u);
     for (int64_t k = 0; k < p->size; k++) {
         memset(one, 0, (size_t)p->size * sizeof *one);
         one[k] = 1.0;
@@ -79,6 +82,7 @@ static enum status measure_by_differences(struct preconditioner *p, struct solid
         preconditioner_project(p, force);
         coarse_space_restrict(&p->coarse, force, p->body + k * p->size);
     }
+    system_resist(system, u, at_u);
     return STATUS_OK;
 }
 
@@ -88,9 +92,6 @@ enum status preconditioner_measure(struct preconditioner *p, struct solid_system
     if (p->size == 0 && p->elements.body == NULL && p->rotation == NULL) {
         return STATUS_OK;
     }
-    NEW_SCRATCH(double, at_u, p->node_count * p->dim, error);
-    system_resist(system, u, at_u);
-    ++*evaluations;
     if (system->body.smoothed) {
         body_share_collect(&system->body);
     }
@@ -102,9 +103,9 @@ enum status preconditioner_measure(struct preconditioner *p, struct solid_system
     } else if (p->size > 0 && system->body.smoothed) {
         RETURN_IF_ERROR(preconditioner_assemble(p, system, error));
     } else if (p->size > 0) {
-        RETURN_IF_ERROR(measure_by_differences(p, system, u, at_u, error));
-        *evaluations += p->size;
+        RETURN_IF_ERROR(measure_by_differences(p, system, u, error));
+        *evaluations += p->size + 2;
     }
-    preconditioner_factorise(p, system);
+    p->measured = true;
     return STATUS_OK;
 }
