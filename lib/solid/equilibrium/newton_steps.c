@@ -203,13 +203,22 @@ void newton_let_slip(struct newton *n)
     n->settled = true;
 }
 
+/* What a correction leaves of the residual's norm: as much as the model's own error, which is about the
+ * square of the step's, or half of what the tolerance asks; no less than usual while pressures advance
+ * between steps. */
+static double left_of_correction(const struct newton *n)
+{
+    double error = n->report->error, enough = fmax(error, 0.5 * n->options->tolerance / error);
+    return error > 0.0 && !body_is_limited(&n->system->body) ? fmin(left, enough) : left;
+}
+
 /* The step of the model from u. Where that has no minimum, as friction does not hold the body, the pressures
  * may still be those of a step before, or of another distribution of friction: the body sticks until they
  * have settled. */
 static bool solve(struct newton *n)
 {
     memset(n->step, 0, (size_t)n->size * sizeof *n->step);
-    bool whole = newton_solve_model(n, 0.0, n->settled ? left_at_first : left, n->radius);
+    bool whole = newton_solve_model(n, 0.0, n->settled ? left_at_first : left_of_correction(n), n->radius);
     n->settled = false;
     if (whole || n->sticks || !newton_held_by_friction(n)) {
         return whole;
