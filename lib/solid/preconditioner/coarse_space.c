@@ -1,52 +1,175 @@
 #include "solid/preconditioner/coarse_space.h"
 
+#include "approx/cells/renumber.h"
 #include "base/chunks.h"
 #include "base/memory.h"
 #include "base/processor.h"
-#include "solid/preconditioner/coarse_centres.h"
+#include "base/sets.h"
+#include "base/vector.h"
 
+#include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { SHARES_FOR_THREAD = 20000 }; /* see chunks_of */
 
-/* Quartic spline of a distance within the radius. */
-static double weight_at(const struct coarse_space *coarse, double distance)
+/* group[]: of each node, or -1 where a body is too small for one; and how many there are. */
+struct groups {
+    int32_t *group;
+    int64_t count;
+};
+
+static void groups_free(struct groups *groups)
 {
-    double q = distance / coarse->radius, q2 = q * q;
-    return 1.0 + q2 * (-6.0 + q * (8.0 - 3.0 * q));
+    free(groups->group);
 }
 
-/* The shares, of the distances that stand in of_centre. */
-static enum status share_unity(struct coarse_space *coarse, struct error *error)
+/* part[]: of each node, the first of those that are connected to it within a run of the Morton curve: by
+ * neighbours, or as nodes of two bodies in succession, which contact may couple. */
+static enum status find_parts(int dim, int64_t nodes, const double *X, const struct neighbours *neighbours,
+                              int64_t runs, int32_t *part, struct error *error)
+{
+    NEW_SCRATCH(int64_t, order, nodes, error);
+    NEW_SCRATCH(int64_t, run, nodes, error);
+    NEW_SCRATCH(int32_t, body, nodes, error);
+    RETURN_IF_ERROR(renumber_morton(dim, nodes, X, NULL, order, error));
+    for (int64_t i = 0; i < nodes; i++) {
+        run[order[i]] = i * runs / nodes;
+        body[i] = part[i] = (int32_t)i;
+    }
+    for (int64_t n = 0; n < nodes; n++) {
+        for (int64_t k = neighbours->ptr[n]; k < neighbours->ptr[n + 1]; k++) {
+            set_join(body, (int32_t)n, neighbours->idx[k]);
+            if (run[neighbours->idx[k]] == run[n]) {
+                set_join(part, (int32_t)n, neighbours->idx[k]);
+            }
+        }
+    }
+    for (int64_t i = 1; i < nodes; i++) {
+        int32_t a = (int32_t)order[i - 1], b = (int32_t)order[i];
+        if (run[a] == run[b] && set_first(body, a) != set_first(body, b)) {
+            set_join(part, a, b);
+        }
+    }
+    for (int64_t n = 0; n < nodes; n++) {
+        part[n] = set_first(part, (int32_t)n);
+    }
+    return STATUS_OK;
+}
+
+/* Nodes without a group join that of a neighbour. Returns whether any did. */
+static bool join_neighbours(const struct neighbours *neighbours, int64_t nodes, int32_t *group)
+{
+    bool joined = false;
+    for (int64_t n = 0; n < nodes; n++) {
+        for (int64_t k = neighbours->ptr[n]; k < neighbours->ptr[n + 1] && group[n] < 0; k++) {
+            group[n] = group[neighbours->idx[k]];
+            joined = joined || group[n] >= 0;
+        }
+    }
+    return joined;
+}
+
+/* A part with half of a run's nodes is a group; of smaller ones there would be too many. */
+static enum status group_nodes(int dim, int64_t nodes, const double *X, const struct neighbours *neighbours,
+                               int64_t runs, struct groups *groups, struct error *error)
+{
+    NEW_SCRATCH(int32_t, part, nodes, error);
+    NEW_SCRATCH(int64_t, size, nodes, error);
+    RETURN_IF_ERROR(NEW_ARRAY(&groups->group, nodes, error));
+    RETURN_IF_ERROR(find_parts(dim, nodes, X, neighbours, runs, part, error));
+    for (int64_t n = 0; n < nodes; n++) {
+        size[part[n]]++;
+    }
+    for (int64_t n = 0; n < nodes; n++) {
+        bool is_group = 2 * runs * size[part[n]] >= nodes;
+        groups->group[n] = !is_group ? -1 : part[n] < n ? groups->group[part[n]] : (int32_t)groups->count++;
+    }
+    while (join_neighbours(neighbours, nodes, groups->group)) {
+    }
+    return STATUS_OK;
+}
+
+/* The mean of the nodes of each group. */
+static enum status place_centres(struct coarse_space *coarse, const struct groups *groups,
+                                 struct error *error)
+{
+    int dim = coarse->dim;
+    NEW_SCRATCH(int64_t, size, groups->count, error);
+    RETURN_IF_ERROR(NEW_ARRAY(&coarse->centre, groups->count * dim, error));
+    for (int64_t n = 0; n < coarse->node_count; n++) {
+        size[groups->group[n] >= 0 ? groups->group[n] : 0] += groups->group[n] >= 0;
+    }
+    for (int64_t n = 0; n < coarse->node_count; n++) {
+        int64_t c = groups->group[n];
+        if (c >= 0) {
+            add_scaled(dim, 1.0 / (double)size[c], coarse->X + n * dim, coarse->centre + c * dim);
+        }
+    }
+    return STATUS_OK;
+}
+
+/* sum[count]: the weights of the groups that node n and its neighbours are in; returns the sum of all. */
+static double weigh_groups(const struct coarse_space *coarse, const struct neighbours *neighbours, int64_t n,
+                           const struct groups *groups, double *sum)
+{
+    const double *x = coarse->X + n * coarse->dim;
+    double farthest2 = 0.0, all = 0.0;
+    memset(sum, 0, (size_t)groups->count * sizeof *sum);
+    for (int64_t k = neighbours->ptr[n]; k < neighbours->ptr[n + 1]; k++) {
+        const double *other = coarse->X + (int64_t)neighbours->idx[k] * coarse->dim;
+        farthest2 = fmax(farthest2, vector_distance2(coarse->dim, x, other));
+    }
+    for (int64_t k = neighbours->ptr[n]; k < neighbours->ptr[n + 1]; k++) {
+        const double *other = coarse->X + (int64_t)neighbours->idx[k] * coarse->dim;
+        double distance2 = vector_distance2(coarse->dim, x, other);
+        int32_t c = groups->group[neighbours->idx[k]];
+        if (c >= 0) {
+            double weight = distance2 > 0.0 ? 1.0 - distance2 / farthest2 : 1.0;
+            sum[c] += weight;
+            all += weight;
+        }
+    }
+    return all;
+}
+
+static enum status share_unity(struct coarse_space *coarse, const struct neighbours *neighbours,
+                               const struct groups *groups, struct error *error)
 {
     struct sparse *shares = &coarse->shares;
-    RETURN_IF_ERROR(sparse_transpose(&coarse->of_centre, shares, error));
-    sparse_free(&coarse->of_centre);
+    int64_t at = 0, room = 0, values = 0;
+    NEW_SCRATCH(double, sum, groups->count, error);
+    RETURN_IF_ERROR(sparse_new(coarse->node_count, groups->count, 0, shares, error));
     for (int64_t n = 0; n < coarse->node_count; n++) {
-        double sum = 0.0;
-        for (int64_t i = shares->ptr[n]; i < shares->ptr[n + 1]; i++) {
-            sum += shares->value[i] = weight_at(coarse, shares->value[i]);
+        double all = weigh_groups(coarse, neighbours, n, groups, sum);
+        RETURN_IF_ERROR(GROW_ARRAY(&shares->idx, at + groups->count, &room, error));
+        RETURN_IF_ERROR(GROW_ARRAY(&shares->value, at + groups->count, &values, error));
+        for (int64_t c = 0; c < groups->count; c++) {
+            if (sum[c] > 0.0) {
+                double far = vector_distance(coarse->dim, coarse->X + n * coarse->dim,
+                                             coarse->centre + c * coarse->dim);
+                coarse->radius = fmax(coarse->radius, far);
+                shares->idx[at] = (int32_t)c;
+                shares->value[at++] = sum[c] / all;
+            }
         }
-        for (int64_t i = shares->ptr[n]; i < shares->ptr[n + 1]; i++) {
-            shares->value[i] /= sum;
-        }
+        shares->ptr[n + 1] = at;
     }
     return sparse_transpose(shares, &coarse->of_centre, error);
 }
 
 enum status coarse_space_build(int dim, int64_t node_count, const double *X,
-                               const struct neighbours *neighbours, int64_t centre_count,
-                               struct coarse_space *coarse, struct error *error)
+                               const struct neighbours *neighbours, int64_t runs, struct coarse_space *coarse,
+                               struct error *error)
 {
-    *coarse = (struct coarse_space){.dim = dim,
-                                    .node_count = node_count,
-                                    .X = X,
-                                    .centre_count = centre_count,
-                                    .count = centre_count * (dim + 1)};
-    if (centre_count > 0) {
-        RETURN_IF_ERROR(NEW_ARRAY(&coarse->centre, centre_count * dim, error));
-        RETURN_IF_ERROR(coarse_centres_pick(coarse, neighbours, error));
-        RETURN_IF_ERROR(share_unity(coarse, error));
+    FREED_BY(groups_free) struct groups groups = {0};
+    *coarse = (struct coarse_space){.dim = dim, .node_count = node_count, .X = X};
+    if (runs > 0) {
+        RETURN_IF_ERROR(group_nodes(dim, node_count, X, neighbours, runs, &groups, error));
+        coarse->centre_count = groups.count;
+        coarse->count = groups.count * (dim + 1);
+        RETURN_IF_ERROR(place_centres(coarse, &groups, error));
+        RETURN_IF_ERROR(share_unity(coarse, neighbours, &groups, error));
     }
     return STATUS_OK;
 }

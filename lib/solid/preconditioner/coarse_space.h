@@ -1,12 +1,10 @@
 /* The coarse space of the preconditioner, equation (25) of lib/README.md: a partition of unity times the
- * linear polynomials. Some nodes far from each other are centres. At each node the shares of the centres,
- * weights by distance, sum to one (Shepard). The basis of the coarse space, the coarse fields, are the shares
- * and their products with the coordinates. It contains all linear fields. The construction works on any
- * cloud, however thin. A node has shares of the centres within a radius only, some six,
- * so that time and memory of the shares do not grow with the number of centres.
- *
- * The distance is the Euclidean one, or half the length of the shortest path from neighbour to neighbour
- * where that is more, so that the two faces of a slit are far from each other. */
+ * linear polynomials. Nodes are in groups. The share of a group at a node is that of the node's neighbours
+ * which are in the group, by a weight that falls with the distance. The basis of the coarse space, the coarse
+ * fields, are the shares and their products with the coordinates. It contains all linear fields. The
+ * construction works on any cloud, however thin. A node has shares of its neighbours' groups only, some six,
+ * so that the shares do not grow with the number of groups, and the two faces of a slit have none in common.
+ */
 #pragma once
 
 #include "approx/shape/shape.h"
@@ -15,27 +13,28 @@
 
 #include <stdint.h>
 
-/* Fields are numbered c * (dim + 1) + m: the share of centre c, times 1 (m = 0) or coordinate m - 1 relative
- * to the centre, divided by the radius. */
+/* Fields are numbered c * (dim + 1) + m: the share of group c, times 1 (m = 0) or coordinate m - 1 relative
+ * to the group's centre, divided by the radius. */
 struct coarse_space {
     int dim;
     int64_t node_count;
     const double *X; /* node_count * dim, m; the caller's */
     int64_t centre_count, count;
-    double *centre;          /* centre_count * dim, m */
-    double radius;           /* within which a centre has a share, m */
-    struct sparse shares;    /* a row for each node: the centres, ascending, and their shares, of sum 1 */
+    double *centre;          /* centre_count * dim, the mean of each group's nodes, m */
+    double radius;           /* within which a group has shares, m */
+    struct sparse shares;    /* a row for each node: groups, ascending, and their shares, of sum 1; or none */
     struct sparse of_centre; /* the transpose */
 };
 
-/* Fields of so many centres; none for 0. `neighbours` of each node; NULL: all distances are straight, as they
- * are between bodies. Errors: STATUS_SYSTEM (memory). */
+/* Fields of groups of nodes; none for 0. So many runs of nodes that are near each other are a group each
+ * where their nodes are connected, else one for each part that is not small; small ones join groups beside
+ * them. neighbours: of each node, with itself. Errors: STATUS_SYSTEM (memory). */
 MUST_CHECK enum status coarse_space_build(int dim, int64_t node_count, const double *X,
-                                          const struct neighbours *neighbours, int64_t centre_count,
+                                          const struct neighbours *neighbours, int64_t runs,
                                           struct coarse_space *coarse, struct error *error);
 void coarse_space_free(struct coarse_space *coarse);
 
-/* value[dim + 1]: the fields at a node of a centre that has this share of it. */
+/* value[dim + 1]: the fields at a node of a group that has this share of it. */
 static inline void coarse_space_values(const struct coarse_space *coarse, int64_t node, int64_t centre,
                                        double share, double *value)
 {

@@ -14,16 +14,16 @@
 
 /* Nodes for each field at least. */
 static const int64_t nodes_per_coarse_field = 16;
-/* Unknowns at most where each costs an evaluation: 16 centres in two dimensions and 8 in three. */
+/* Unknowns at most where each costs an evaluation: 16 groups in two dimensions and 8 in three. */
 static const int64_t most_unknowns = 96;
-/* Centres at most where the stiffness is assembled: the matrices are dense, and more save no time. */
-static const int64_t most_centres = 128;
+/* Groups at most where the stiffness is assembled: the matrices are dense, and more save no time. */
+static const int64_t most_groups = 128;
 
-static int64_t centre_count(const struct solid_system *system)
+static int64_t group_count(const struct solid_system *system)
 {
     int64_t fields = system->dim + 1, most = most_unknowns / (fields * system->dim);
     int64_t count = system->node_count / (nodes_per_coarse_field * fields);
-    most = system->body.smoothed ? most_centres : most;
+    most = system->body.smoothed ? most_groups : most;
     return count < most ? count : most;
 }
 
@@ -71,9 +71,9 @@ enum status preconditioner_build(struct solid_system *system, bool coarse, struc
     if (coarse && system_has_inverse(system)) {
         RETURN_IF_ERROR(stiffness_factor_begin(system, &p->elements, error));
     }
-    coarse = coarse && p->elements.body == NULL;
+    coarse = coarse && p->elements.body == NULL && system->node_lists != NULL;
     RETURN_IF_ERROR(coarse_space_build(system->dim, system->node_count, system->X, system->node_lists,
-                                       coarse ? centre_count(system) : 0, &p->coarse, error));
+                                       coarse ? group_count(system) : 0, &p->coarse, error));
     RETURN_IF_ERROR(leave_out_held(system, &p->coarse, error));
     p->size = p->coarse.count * p->dim;
     cells = p->size * p->size;
