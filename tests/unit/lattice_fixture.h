@@ -33,6 +33,7 @@ static inline void lattice_build(struct lattice *l, int dim, int64_t n, int alon
     ARRAY(list->of_point, assembly->point_count);
     ARRAY(list->of_cell, assembly->cells.count);
     ARRAY(list->section, 1);
+    ARRAY(list->group, 1);
     list->items[0] = (struct material){.model = MATERIAL_NEO_HOOKEAN, .density = 1000.0};
     material_set_moduli(&list->items[0], 3000.0, poisson_ratio);
     GOOD(assembly_build(assembly, &l->system, &note, &error));

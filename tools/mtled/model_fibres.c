@@ -124,7 +124,7 @@ static void set_directions(struct material_list *list, int64_t m, int64_t q, con
 {
     if (list->of_point[q] == m) {
         list->items[list->count] = list->items[m];
-        list->section[list->count] = (int32_t)m;
+        list->section[list->count] = list->group[list->count] = (int32_t)m;
         list->of_point[q] = (int32_t)list->count++;
     }
     list->items[list->of_point[q]].fibre = directions;

@@ -5,36 +5,47 @@
 #include "base/lists.h"
 #include "base/sets.h"
 #include "base/vector.h"
+#include "solid/equilibrium/statics.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-/* Jumps of the shear modulus by more than this count: layers in series are 2 % too stiff where supports reach
- * across a jump of 3. */
+/* Jumps of the shear or bulk modulus by more than this count: layers in series are 2 % too stiff where
+ * supports reach across a jump of 3. */
 static const double least_jump = 2.0;
 
-/* The shear moduli at the integration points of a cell. */
+/* The shear moduli at the integration points of a cell, and the bulk moduli, those of an almost
+ * incompressible material limited as in statics. */
 struct moduli {
-    double low, high;
+    double low, high, low_bulk, high_bulk;
 };
 
 static void read_moduli(const struct assembly *input, struct moduli *of)
 {
     const struct material_list *materials = &input->materials;
     for (int64_t c = 0; c < input->cells.count; c++) {
-        of[c] = (struct moduli){INFINITY, 0.0};
+        of[c] = (struct moduli){INFINITY, 0.0, INFINITY, 0.0};
     }
     for (int64_t q = 0; q < input->point_count; q++) {
-        double modulus = materials->items[materials->of_point[q]].shear_modulus;
+        const struct material *material = &materials->items[materials->of_point[q]];
+        double shear = material->shear_modulus,
+               bulk = fmin(material_bulk(material), STATICS_BULK_LIMIT * shear);
         struct moduli *cell = &of[input->point_cell[q]];
-        *cell = (struct moduli){fmin(cell->low, modulus), fmax(cell->high, modulus)};
+        *cell = (struct moduli){fmin(cell->low, shear), fmax(cell->high, shear), fmin(cell->low_bulk, bulk),
+                                fmax(cell->high_bulk, bulk)};
     }
 }
 
 /* The ratio of the largest shear modulus of two cells to the least. */
-static double jump_between(const struct moduli *a, const struct moduli *b)
+static double shear_jump(const struct moduli *a, const struct moduli *b)
 {
     return fmax(a->high, b->high) / fmin(a->low, b->low);
+}
+
+/* The same, or the ratio of the bulk moduli, if that is larger. */
+static double jump_between(const struct moduli *a, const struct moduli *b)
+{
+    return fmax(shear_jump(a, b), fmax(a->high_bulk, b->high_bulk) / fmin(a->low_bulk, b->low_bulk));
 }
 
 /* Whether two cells are on one side of the input's interfaces. */
@@ -83,7 +94,8 @@ static struct found search(const struct faces *faces, const int32_t *side, const
         int32_t a = faces->cell[2 * f], b = faces->cell[2 * f + 1];
         double ratio = b < 0 ? 1.0 : jump_between(&of[a], &of[b]);
         if (ratio > least_jump && side != NULL && side[a] != side[b]) {
-            found.softer = found.softer || (side[a] < side[b]) == (of[a].high < of[b].high);
+            found.softer = found.softer || (shear_jump(&of[a], &of[b]) > least_jump &&
+                                            (side[a] < side[b]) == (of[a].high < of[b].high));
         } else if (ratio > found.ratio) {
             found.ratio = ratio;
             found.face = f;
@@ -123,6 +135,23 @@ static enum status stiffest_first(struct stream *stream, int64_t cells, const in
     return stage_renew(stream, renewed, error);
 }
 
+/* Nodal volumes end at a jump, as the pressure jumps there: the materials of a table on one side are a group.
+ */
+static enum status divide_table(struct model *model, int32_t section, const int32_t *side,
+                                struct error *error)
+{
+    struct material_list *list = &model->assembly.materials;
+    NEW_SCRATCH(int32_t, first, model->assembly.cells.count, error); /* of each side, by its number */
+    for (int64_t q = 0; q < model->assembly.point_count; q++) {
+        int32_t m = list->of_point[q], *group = first + side[model->assembly.point_cell[q]];
+        if (list->section[m] == section) {
+            *group = *group > 0 ? *group : m;
+            list->group[m] = *group;
+        }
+    }
+    return STATUS_OK;
+}
+
 /* Say where supports reach across a jump; `distance`: they reach across everything. */
 static void note_jump(struct model *model, const struct faces *faces, const struct groups *regions,
                       const struct found *found, bool distance)
@@ -133,7 +162,7 @@ static void note_jump(struct model *model, const struct faces *faces, const stru
     vector_middle(cells->dim, cells->x, cells->dim, node, middle);
     int32_t first = regions->group[cell[0]], second = regions->group[cell[1]];
     (void)fail(&model->interfaces, STATUS_OK,
-               "the shear modulus jumps %.3g : 1 between cells of %s%s%s at %s, and supports reach across: "
+               "the stiffness jumps %.3g : 1 between cells of %s%s%s at %s, and supports reach across: "
                "stress and forces are wrong there: %s",
                found->ratio, regions->names.name[first], first == second ? "" : " and ",
                first == second ? "" : regions->names.name[second], POINT_TEXT(cells->dim, middle),
@@ -166,6 +195,11 @@ enum status model_interfaces(struct model *model, struct stream *stream, bool *r
     struct found found = search(faces, side, of);
     if (found.ratio > least_jump) {
         note_jump(model, faces, &regions, &found, distance);
+    }
+    for (int64_t m = 0; divided && m < model->scene->material_count; m++) {
+        if (model->scene->materials[m].table != NULL) {
+            RETURN_IF_ERROR(divide_table(model, (int32_t)m, side, error));
+        }
     }
     *renewed = divided || found.softer;
     return *renewed ? stiffest_first(stream, input->cells.count, side, of, error) : STATUS_OK;

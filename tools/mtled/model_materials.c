@@ -52,7 +52,7 @@ static enum status add_point_table(struct model *model, int64_t m, struct error 
         struct material *material = &list->items[list->count];
         *material = list->items[m];
         material_set_moduli(material, values[dim], values[dim + 1]);
-        list->section[list->count] = (int32_t)m;
+        list->section[list->count] = list->group[list->count] = (int32_t)m;
         list->of_point[q] = (int32_t)list->count++;
     }
     if (row != table.rows) {
@@ -115,6 +115,7 @@ enum status model_materials(struct model *model, struct error *error)
     RETURN_IF_ERROR(NEW_ARRAY(&list->of_point, points, error));
     /* At most one for each section and for each point. */
     RETURN_IF_ERROR(NEW_ARRAY(&list->section, scene->material_count + points, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&list->group, scene->material_count + points, error));
     list->count = scene->material_count;
     for (int64_t m = 0; m < scene->material_count; m++) {
         list->items[m] = scene->materials[m].material;
@@ -122,7 +123,7 @@ enum status model_materials(struct model *model, struct error *error)
         list->items[m].fibre = has_fibres(&scene->materials[m]) ? scene->materials[m].directions : NULL;
         list->items[m].prony = scene->materials[m].prony.values;
         list->items[m].prony_terms = scene->materials[m].prony.terms;
-        list->section[m] = (int32_t)m;
+        list->section[m] = list->group[m] = (int32_t)m;
         if (list->items[m].active > 0.0) {
             RETURN_IF_ERROR(model_add_curve(model, &scene->materials[m].label, &scene->materials[m].curve,
                                             &list->items[m].active_curve, error));

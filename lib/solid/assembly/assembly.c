@@ -68,7 +68,7 @@ static enum status build_body(const struct assembly *input, struct solid_system 
                               .materials = materials->items,
                               .material = materials->of_point,
                               .material_count = materials->count,
-                              .group = materials->section,
+                              .group = materials->group,
                               .vertex = vertex,
                               .barycentric = coordinate,
                               .junction = junction,
@@ -161,7 +161,7 @@ enum status assembly_build(struct assembly *input, struct solid_system *system, 
 
 void material_list_free(struct material_list *list)
 {
-    FREE_ALL(list->items, list->of_point, list->of_cell, list->section);
+    FREE_ALL(list->items, list->of_point, list->of_cell, list->section, list->group);
     *list = (struct material_list){0};
 }
 

@@ -58,6 +58,7 @@ struct material_list {
     int32_t *of_point; /* of each integration point */
     int32_t *of_cell;  /* of each cell: that of its section */
     int32_t *section;  /* count: of each */
+    int32_t *group;    /* count: see struct body_input */
 };
 void material_list_free(struct material_list *list);
 
