@@ -72,6 +72,23 @@ as_soon() {
     same_state floor.scene 2e-3
 }
 
+@test "a field in which the body has swallowed a roller, or only begins beyond its surface: begun at rest, the same state" {
+    clouds 2 12 12
+    awk 'BEGIN { for (k = 0; k <= 200; k++) print 0.05 + 0.02 * cos(-k * 0.01 * 3.14159265358979), 0.1202 + 0.02 * sin(-k * 0.01 * 3.14159265358979) }' > roller.tsv
+    held() { block quasi-static && held_below; }
+    { held && printf '[contact roller]\nfacets = ymax\nrigid = roller.tsv\nunit = m\nside = left\ntranslation = 0, -0.012\ncurve = smooth\n'; } > roller.scene
+    { held && printf '[displacement top]\nfacets = ymax\ncomponents = 0, 0.03\n'; } > pulled.scene
+    { held && printf '[pressure top]\nfacets = ymax\nvalue = 1\n'; } > still.scene
+    mtled -q -o cold.dat roller.scene fine.mts
+    local kind
+    for kind in pulled still; do
+        mtled -q -o other.dat $kind.scene fine.mts
+        mtled -q -s other.dat -o warm.dat roller.scene fine.mts 2> said
+        grep -q 'u goes through the surface of \[contact roller\]: begun at rest$' said
+        cmp <(mts print u cold.dat) <(mts print u warm.dat)
+    done
+}
+
 @test "from its own result a run ends where it was, at once" {
     clouds 2 8 12
     { pressed_block && printf '[output]\nreactions = yes\n'; } > push.scene

@@ -1,6 +1,10 @@
 #include "mtled/run.h"
 
+#include "base/vector.h"
+
+#include <math.h>
 #include <stdarg.h>
+#include <string.h>
 
 static void show_progress(struct display *display, const struct progress *progress)
 {
@@ -122,6 +126,30 @@ static void halve_inverted(struct run *run)
     }
 }
 
+/* The contact whose rigid surface the body goes through on the straight way from rest to u, in steps of a
+ * spacing at most; NULL: none. It would be pushed out to whatever side is near. */
+static const struct contact *passed_through(struct run *run)
+{
+    struct solid_system *system = &run->model->system;
+    const struct contact *through = NULL;
+    int64_t size = system->node_count * system->dim;
+    SCRATCH double *on_way = run_new_values(run, size);
+    double longest =
+        vector_longest(system->dim, system->node_count, run->u, NULL) + system_longest_way(system);
+    double steps = ceil(longest / system_node_spacing(system));
+    for (double step = 1.0; step <= steps && through == NULL && system->contact_count > 0; step++) {
+        for (int64_t i = 0; i < size; i++) {
+            on_way[i] = step / steps * run->u[i];
+        }
+        system_load_factors(system, step / steps);
+        system_measure_contacts(system, on_way, true);
+        for (int64_t c = 0; c < system->contact_count; c++) {
+            through = contact_is_through(&system->contacts[c]) ? &system->contacts[c] : through;
+        }
+    }
+    return through;
+}
+
 void run_start(struct run *run)
 {
     const struct nodal_field *field = &run->start.field;
@@ -134,5 +162,12 @@ void run_start(struct run *run)
                                             run->u, &error),
                                 "--start: %s", run->start.name));
     halve_inverted(run);
+    const struct contact *through = passed_through(run);
+    if (through != NULL) {
+        tool_note(run->tool, "--start: %s: u goes through the surface of [contact %s]: begun at rest",
+                  run->start.name, run->scene->contacts[through->section].label.name);
+        memset(run->u, 0, (size_t)(run->model->system.node_count * run->scene->dim) * sizeof *run->u);
+        return;
+    }
     TOOL_TRY(run->tool, system_start(&run->model->system, run->u, &error));
 }

@@ -96,6 +96,9 @@ double contact_most_depth(const struct contact *contact, int64_t p);
  * with a rigid surface. */
 double contact_passes(const struct contact *contact, const double *step);
 
+/* Whether a point has gone through the rigid surface, at the last evaluation. */
+bool contact_is_through(const struct contact *contact);
+
 /* Depths of point p below this count as zero, m. */
 double contact_round_off(const struct contact *contact, int64_t p);
 
