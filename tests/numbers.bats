@@ -88,6 +88,28 @@ END
     refused 1 "of the displacement, most of all at (0" mtled pressure.scene square.mts
 }
 
+# by_load PRESSURE: u at the nodes for each pascal, of the square under a pressure on its top.
+by_load() {
+    { block quasi-static && held_below && printf '[pressure top]\nfacets = ymax\nvalue = %s\n' "$1"; } > light.scene
+    mtled -q -o light.dat light.scene table.mts 2> note
+    mts print u light.dat | awk -v p="$1" '{ by = (p > 0 ? 1 / p : 1); print by * $1, by * $2 }'
+}
+
+@test "small loads: u in proportion down to a strain of 1e-12; what is lost in round-off is told, with a plate, too" {
+    by_load 1e-3 > one
+    [ ! -s note ]
+    by_load 1e-9 > small
+    paste one small | awk '{ for (k = 1; k <= 2; k++) { d = $k - $(k + 2); s = $k > s ? $k : s; e = d * d > e ? d * d : e } } END { print sqrt(e) / s; exit !(e < 4e-4 * s * s) }'
+    by_load 1e-11 > lost
+    grep -q 'what acts moves the body by no more than round-off, .* m: displacements and forces are not known$' note
+    by_load 0 > none
+    [ ! -s note ]
+    printf '1 0.1\n-1 0.1\n' > lid.tsv
+    { block quasi-static && held_below && printf '[contact lid]\nfacets = ymax\nrigid = lid.tsv\nunit = m\nside = left\ntranslation = 0, -1e-15\ncurve = smooth\n'; } > lid.scene
+    mtled -q -o lid.dat lid.scene table.mts 2> note
+    grep -q 'what acts moves the body by no more than round-off' note
+}
+
 @test "without frames nothing is written; with -o what there is goes beside the file" {
     scene dynamic 0.49 'components = 0.1, 0.1' 'end_time = 0.3\ntime_step_margin = 0.999' > run.scene
     echo precious > u.dat

@@ -28,6 +28,13 @@ static void judge(struct run *run, const struct statics_report *report)
                           ? "contacts, whose points go from facet to facet, admit no"
                           : "round-off admits no");
         }
+        if (report->lost) {
+            tool_note(
+                run->tool,
+                "%s: what acts moves the body by no more than round-off, %.2g m: displacements and forces "
+                "are not known",
+                scene->path, statics_round_off(&run->model->system));
+        }
         run_stability_check(run, 1.0, true);
         run_contacts_penetrate(run, report->move, report->penetration_allowed, true);
         run_folds_judge(run);

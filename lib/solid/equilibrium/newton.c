@@ -159,7 +159,7 @@ enum status newton_run(struct solid_system *system, const struct statics_options
     RETURN_IF_ERROR(newton_allocate(&n, error));
     n.spacing = system_node_spacing(system);
     n.body_size = box_diagonal(&box);
-    n.reach = statics_reach(system);
+    n.round_off = statics_round_off(system);
     n.most_change = 1.0 / fmax(1.0, ceil(system_longest_change(system) / (prescribed_spacings * n.spacing)));
     n.longest_step = most_of_size * n.body_size;
     RETURN_IF_ERROR(options->restored != NULL ? resume(&n, error) : begin(&n, error));

@@ -16,7 +16,7 @@ static const int64_t most_vain = 12; /* corrections in which the error has not h
 
 static bool contacts_lack(const struct newton *n)
 {
-    return !statics_is_at_rest(n->report, n->reach) &&
+    return n->report->move > n->round_off &&
            system_contacts_give_way(n->system, n->u, n->report->move, n->options->tolerance);
 }
 
@@ -56,12 +56,6 @@ void newton_augment(struct newton *n)
     preconditioner_follow(&n->preconditioner, n->system);
 }
 
-/* Some units in the last place of positions, m. */
-static double round_off(const struct newton *n)
-{
-    return 32.0 * DBL_EPSILON * n->reach;
-}
-
 void newton_estimate(struct newton *n)
 {
     struct statics_report *report = n->report;
@@ -70,7 +64,8 @@ void newton_estimate(struct newton *n)
     report->move = fmax(move, n->options->tolerance * n->largest_move);
     double lowest = isinf(n->lowest) ? NEWTON_LEAST_TOLD : fmin(1.0, fmax(n->lowest, NEWTON_LEAST_TOLD));
     double error = newton_longest(n, n->scaled, &report->worst_node) / lowest;
-    bool at_rest = statics_is_at_rest(report, n->reach) || !(square > 0.0);
+    bool at_rest = report->move <= n->round_off || !(square > 0.0);
+    report->lost = at_rest && error > DBL_EPSILON * n->body_size;
     report->error = !isfinite(square) ? INFINITY : at_rest ? 0.0 : error / report->move;
 }
 
@@ -102,9 +97,9 @@ static bool is_found(struct newton *n, bool vain)
     }
     if (vain) {
         bool hovers = system_has_touched(n->system) && !newton_held_by_friction(n);
-        most = fmax(most, hovers ? most_hovering : round_off(n) / report->move);
+        most = fmax(most, hovers ? most_hovering : n->round_off / report->move);
     }
-    bool rounds = report->error <= (vain ? round_off(n) / report->move : 0.0); /* and so do the pressures */
+    bool rounds = report->error <= (vain ? n->round_off / report->move : 0.0); /* and so do the pressures */
     bool pressures = rounds || newton_has_pressures(n);
     bool contacts = !contacts_lack(n);
     report->penetration = system_contact_miss(n->system);

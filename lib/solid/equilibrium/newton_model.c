@@ -213,8 +213,7 @@ bool newton_solve_model(struct newton *n, double of_last, double share, double r
         continue_last(n, of_last);
     }
     double length = newton_longest(n, n->step, NULL);
-    bool at_rest = statics_is_at_rest(n->report, n->reach);
-    double none = at_rest ? ROUND_OFF * n->reach : DBL_EPSILON * n->body_size;
+    double none = n->report->move <= n->round_off ? n->round_off : DBL_EPSILON * n->body_size;
     for (int k = 0; k < MOST_ITERATIONS; k++) {
         double now = scale_gradient(n);
         n->square = k == 0 ? now : n->square;

@@ -28,7 +28,7 @@ struct newton {
     double last_change;                         /* and of the load; 0: none yet */
     double *factor_change;                      /* of the load curves */
     double spacing, body_size;                  /* mean spacing of the nodes; diagonal of their box, m */
-    double reach;                               /* see statics_reach */
+    double round_off;                           /* see statics_round_off */
     double load, load_change;                   /* share of the load at u; the next increment, */
     double most_change;                         /* and its most */
     bool waits;                                 /* the load, until u is almost in equilibrium */

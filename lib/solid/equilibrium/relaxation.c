@@ -41,7 +41,7 @@ struct relaxation {
     double lowest;                        /* estimate (26) of the least eigenvalue still active */
     double window[WINDOWS];
     double body_size;    /* diagonal of the nodes' box, m */
-    double reach;        /* see statics_reach */
+    double round_off;    /* see statics_round_off */
     double load;         /* share of the load at u */
     double largest_move; /* so far, of a node, m */
     double pressures_lack;
@@ -246,7 +246,7 @@ static void estimate(struct relaxation *r)
     r->largest_move = fmax(r->largest_move, move);
     r->report->move = fmax(move, r->options->tolerance * r->largest_move);
     move = vector_longest(r->system->dim, r->system->node_count, r->acceleration, &r->report->worst_node);
-    bool at_rest = statics_is_at_rest(r->report, r->reach);
+    bool at_rest = r->report->move <= r->round_off;
     r->report->error = at_rest ? 0.0 : safety * move / (least * r->report->move);
 }
 
@@ -257,7 +257,7 @@ static bool multipliers_hold(struct relaxation *r)
     r->report->penetration = system_contact_miss(r->system);
     r->report->penetration_allowed = system_penetration_allowed(r->report->move);
     return pressures &&
-           (r->augmentations >= most_augmentations || statics_is_at_rest(r->report, r->reach) ||
+           (r->augmentations >= most_augmentations || r->report->move <= r->round_off ||
             !system_contacts_give_way(r->system, r->before, r->report->move, r->options->tolerance));
 }
 
@@ -362,7 +362,7 @@ enum status relaxation_run(struct solid_system *system, const struct statics_opt
     struct box box = box_of(system->dim, system->node_count, system->X);
     *report = (struct statics_report){.least_jacobian = 1.0};
     r.body_size = box_diagonal(&box);
-    r.reach = statics_reach(system);
+    r.round_off = statics_round_off(system);
     body_limit_bulk(&system->body, STATICS_BULK_LIMIT);
     RETURN_IF_ERROR(allocate(&r, error));
     if (options->restored != NULL) {

@@ -4,6 +4,7 @@
 #include "base/box.h"
 #include "base/round_off.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -59,19 +60,16 @@ bool statics_tell(const struct statics_options *options, const struct statics_re
     return options->progress == NULL || options->progress(options->context, &progress);
 }
 
-double statics_reach(const struct solid_system *system)
+/* Some units in the last place of the body's size; with contacts, which are found by places and may be all
+ * that holds the body, more, of the largest coordinate. */
+double statics_round_off(const struct solid_system *system)
 {
     struct box box = box_of(system->dim, system->node_count, system->X);
     double reach = box_diagonal(&box);
     for (int k = 0; k < box.dim && system->contact_count > 0; k++) {
         reach = fmax(reach, fmax(fabs(box.low[k]), fabs(box.high[k])));
     }
-    return reach;
-}
-
-bool statics_is_at_rest(const struct statics_report *report, double reach)
-{
-    return report->move <= ROUND_OFF * reach;
+    return (system->contact_count > 0 ? ROUND_OFF : 32.0 * DBL_EPSILON) * reach;
 }
 
 bool statics_is_away(const struct solid_system *system, const struct statics_report *report, double body_size)

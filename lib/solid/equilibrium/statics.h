@@ -50,6 +50,7 @@ struct statics_report {
     double error; /* estimated remaining error at the worst node, relative to the present displacement */
     double move;  /* the largest displacement of a node, m, at least the tolerance times the largest of the
                    * run: the scale of error and penetration_allowed */
+    bool lost;    /* something acts on the body, but moves it by no more than statics_round_off: error is 0 */
     double penetration, penetration_allowed;    /* of contacts, m: see contact_miss */
     double load;                                /* share of the load at u, 0..1 */
     int64_t worst_node;     /* the farthest from equilibrium at the last estimate, the caller's index */
@@ -77,12 +78,8 @@ void statics_give_frame(const struct statics_options *options, double share, con
 bool statics_tell(const struct statics_options *options, const struct statics_report *report, double share,
                   const double *u, state_function *visit, void *run);
 
-/* The length by whose round-off a body at rest moves, m: its size; with contacts, which are found by places,
- * at least the largest coordinate. */
-double statics_reach(const struct solid_system *system);
-
-/* Whether round-off alone has moved the body: nothing acts on it yet. */
-bool statics_is_at_rest(const struct statics_report *report, double reach);
+/* How far round-off may move a body on which nothing acts yet, m: one that moves no more is at rest. */
+double statics_round_off(const struct solid_system *system);
 
 /* Whether the body has moved farther than any equilibrium is. */
 bool statics_is_away(const struct solid_system *system, const struct statics_report *report,
