@@ -124,6 +124,15 @@ brain='model = ogden\nmu = 842\nalpha = -4.7\nkappa = 8.42e7\nprony = .45 .5, .3
     mts print energy.frames stretched.dat | awk '$4 < before - 1e-9 { bad = 1 } { before = $4 } END { exit bad || NR != 1001 }'
 }
 
+@test "prony: a frame at a corner of a load curve is written, with the corner in few digits, and the steps are short behind it" {
+    cloud -d 3 -k regular -n 2 --box 0,1,0,1,0,1 2> note | shapefn > cube.mts 2>> note
+    printf '0 0\n2.333333333 1\n4.66666667 -1\n7 0\n' > corners.tsv
+    timed 7 0 "$brain" '[displacement w]\nfacets = xmax\nnormal = 0.1\ncurve = corners.tsv' | sed 's/^\[output\]/&\nframes = 3/; /^time_steps/d' > corners.scene
+    mtled -v corners.scene cube.mts 2> said > corners.dat
+    mts print reactions.frames corners.dat | awk '{ print; bad += ($1 - 7 * (NR - 1) / 3)^2 > 1e-12 } END { exit bad || NR != 4 }'
+    awk -F '\t' '/^error of the steps/ { print; exit !($2 > 0 && $2 < 2e-3) }' said
+}
+
 # At time 0 nothing acts on it yet but round-off.
 @test "prony: a block that rests on a floor is pressed in time" {
     cloud -d 2 -k jittered -n 9 --seed 4 --jitter 0.15 --box 0,0.1,0,0.1 | shapefn > block.mts 2> note

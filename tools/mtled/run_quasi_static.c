@@ -161,13 +161,13 @@ static double begin_step(void *context, double time)
                         first_of_segment * (loading.after - loading.before));
     double by = body_next_step(body, error_of_steps / loading.reached);
     double step = by * body->prony.step / duration;
-    if (!(time > loading.before)) {
+    if (!(time > loading.before + same_time)) {
         body_turn(body);
         step = least;
     }
     step = fmin(fmax(step, least), longest_step);
     double frame = floor((time + same_time) * frames + 1.0) / frames;
-    double end = fmin(loading.after, frame), left = end - time;
+    double end = loading.after < frame - same_time ? loading.after : frame, left = end - time;
     end = left <= step + same_time ? end : left < 2.0 * step ? time + 0.5 * left : time + step;
     body_step(body, (end - time) * duration);
     return end;
