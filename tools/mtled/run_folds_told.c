@@ -143,7 +143,7 @@ void run_folds_judge(struct run *run)
 void run_stability_check(struct run *run, double load, bool final)
 {
     static const char text[] =
-        "%s: at %s, the material law is not strongly elliptic in %.2g %% of the body, as at %s: what it does "
+        "%s: at %s, the material law is not strongly elliptic in %.3g %% of the body, as at %s: what it does "
         "there depends on the mesh: use another model, as neo-hookean, or a smaller load";
     const struct stability *stability = &run->model->system.stability;
     struct inelliptic found = body_inelliptic(&run->model->system.body);
