@@ -20,6 +20,7 @@ enum status friction_build(struct contact *contact, double coefficient, bool fol
     friction->follows = follows;
     RETURN_IF_ERROR(NEW_ARRAY(&friction->stiffness, count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&friction->yield, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&friction->lag, count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&friction->anchor, count * dim, error));
     RETURN_IF_ERROR(NEW_ARRAY(&friction->slips, count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&friction->before, count * dim, error));
@@ -42,7 +43,7 @@ void friction_free(struct contact *contact)
 {
     struct contact_friction *friction = contact->friction;
     if (friction != NULL) {
-        FREE_ALL(friction->stiffness, friction->yield, friction->anchor, friction->facet,
+        FREE_ALL(friction->stiffness, friction->yield, friction->lag, friction->anchor, friction->facet,
                  friction->place_facet, friction->place_weight, friction->ahead, friction->slips,
                  friction->before, friction->passed, friction->slip);
     }
@@ -60,6 +61,9 @@ enum status friction_state(struct contact *contact, const char *prefix, const st
     }
     const struct state_value values[] = {
         {"friction_yield", STATE_NUMBERS, friction->yield, count},
+        {"friction_lag", STATE_NUMBERS, friction->lag, count},
+        {"friction_share", STATE_NUMBERS, &friction->share, 1},
+        {"friction_lags", STATE_FLAGS, &friction->lags, 1},
         {"friction_anchor", STATE_NUMBERS, friction->anchor, count * dim},
         {"friction_slips", STATE_FLAGS, friction->slips, count},
         {"friction_before", STATE_NUMBERS, friction->before, count * dim},
@@ -85,6 +89,12 @@ enum status friction_state(struct contact *contact, const char *prefix, const st
         }
     }
     return STATUS_OK;
+}
+
+/* Whether there is a place opposite to point p for its anchor. */
+static bool has_place(const struct contact *contact, int64_t p)
+{
+    return contact->between == NULL || contact->friction->place_facet[p] > 0;
 }
 
 bool friction_acts(const struct contact *contact, int64_t p)
@@ -156,7 +166,7 @@ void friction_measure(struct contact *contact)
 {
     struct contact_friction *friction = contact->friction;
     for (int64_t p = 0; friction != NULL && p < contact->count; p++) {
-        bool placed = contact->between == NULL || friction->place_facet[p] > 0;
+        bool placed = has_place(contact, p);
         if (friction->follows) {
             friction->yield[p] = placed ? friction->coefficient * contact->pressure[p] : 0.0;
         }
@@ -190,11 +200,41 @@ static void take_place(struct contact *contact, int64_t p)
     add_scaled(dim, -1.0, place, ahead);
 }
 
+/* Note how far the yields of the model are from those by its pressures, and Aitken's share of that way: two
+ * such steps show by which factor the fixed-point iteration of the yields changes it. */
+static void note_lag(struct contact *contact)
+{
+    struct contact_friction *friction = contact->friction;
+    double product = 0.0, square = 0.0;
+    for (int64_t p = 0; p < contact->count; p++) {
+        double yield = friction->yield[p], before = friction->lag[p];
+        friction->lag[p] = isfinite(yield) ? friction->coefficient * contact->pressure[p] - yield : 0.0;
+        product += before * (friction->lag[p] - before);
+        square += (friction->lag[p] - before) * (friction->lag[p] - before);
+    }
+    double share = friction->lags && square > 0.0 ? -friction->share * product / square : 1.0;
+    friction->share = share > 0.0 ? fmin(share, 1.0) : 1.0;
+    friction->lags = true;
+}
+
+void friction_relax(struct contact *contact)
+{
+    struct contact_friction *friction = contact->friction;
+    for (int64_t p = 0; friction != NULL && friction->lags && p < contact->count; p++) {
+        if (has_place(contact, p)) {
+            friction->yield[p] -= (1.0 - friction->share) * friction->lag[p];
+        }
+    }
+}
+
 void friction_accept(struct contact *contact)
 {
     struct contact_friction *friction = contact->friction;
     for (int64_t i = 0; friction != NULL && !friction->sticks && i < contact->count * contact->dim; i++) {
         friction->passed[i] = 0.0;
+    }
+    if (friction != NULL && !friction->follows && !friction->sticks) {
+        note_lag(contact);
     }
     for (int64_t p = 0; friction != NULL && p < contact->count; p++) {
         if (friction->sticks) {
@@ -339,15 +379,18 @@ void friction_slide(struct contact *contact)
 void friction_predict(struct contact *contact, bool sticks)
 {
     struct contact_friction *friction = contact->friction;
+    if (friction != NULL) {
+        friction->lags = false;
+    }
     for (int64_t p = 0; friction != NULL && p < contact->count; p++) {
-        bool touches = contact->between == NULL || friction->place_facet[p] > 0;
         bool presses = friction->yield[p] > 0.0;
         double passed = presses ? 1.0 - held_share(friction, contact->dim, p) : 0.0;
         add_scaled(contact->dim, passed, friction->slip + p * contact->dim,
                    friction->passed + p * contact->dim);
         friction->yield[p] *= predicted;
         if (presses ? sticks
-                    : touches && fabs(contact->checked_distance[p]) <= contact_round_off(contact, p)) {
+                    : has_place(contact, p) &&
+                          fabs(contact->checked_distance[p]) <= contact_round_off(contact, p)) {
             friction->yield[p] = INFINITY;
         }
     }

@@ -14,7 +14,10 @@ struct contact_friction {
     bool follows;      /* dynamics: yields and normals are those of each evaluation */
     double *stiffness; /* count: of the spring, Pa/m */
                        /* The state. */
-    double *yield;     /* count: the largest traction, Pa: that by the pressure at the last accepted step */
+    double *yield;     /* count: the largest traction, Pa: that by the pressure at the last accepted step, */
+    double *lag;       /* count: and how much more that is than in the model of the step, Pa; */
+    double share;      /* the part of it that the next model takes, see friction_relax; */
+    bool lags;         /* both are known in this increment */
     double
         *anchor; /* count * dim: its place in the frame of a rigid surface, m, from which only the part across
                     the normal counts; or the weights of the corners of a facet, which may be negative */
@@ -62,6 +65,9 @@ void friction_slide(struct contact *contact);
  * pressing do not slip; with `sticks` none that touches does: a body that only friction holds would otherwise
  * be free while its pressures grow. */
 void friction_predict(struct contact *contact, bool sticks);
+
+/* Before a step from the last accepted one: yields of its model and those by its pressures, mixed. */
+void friction_relax(struct contact *contact);
 
 /* Let no point that presses or touches slip, in any step from the last evaluation on; or let them again. */
 void friction_hold(struct contact *contact, bool sticks);

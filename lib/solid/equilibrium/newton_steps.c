@@ -231,6 +231,10 @@ static bool solve(struct newton *n)
 bool newton_correct(struct newton *n)
 {
     double lowest = n->lowest;
+    if (n->slides) {
+        system_relax_friction(n->system);
+        newton_touch(n, n->u, &n->at_u);
+    }
     bool whole = solve(n);
     n->length = newton_longest(n, n->step, &n->report->worst_node);
     if (n->length == 0.0) {
@@ -248,6 +252,9 @@ bool newton_correct(struct newton *n)
         if (!(n->length > least)) {
             n->lowest = lowest; /* that of a step that goes nowhere is one of round-off */
             (void)newton_evaluate(n, n->u, &n->at_u);
+            if (n->slides) { /* yields by the pressures at u */
+                system_accept(n->system);
+            }
             return n->report->error <= n->options->tolerance; /* u needs no step, but perhaps pressures */
         }
         shorten(n, 0.5);

@@ -131,10 +131,11 @@ void system_add_contacts(struct solid_system *system, const double *u, double *f
  * change the state. */
 void system_accept(struct solid_system *system);
 
-/* Whether a contact has friction; friction_predict and friction_slide of all contacts; and what friction has
- * dissipated, J (2D: J/m). */
+/* Whether a contact has friction; functions of friction.h for all contacts; and what friction has dissipated,
+ * J (2D: J/m). */
 bool system_has_friction(const struct solid_system *system);
 void system_predict_friction(struct solid_system *system, bool sticks);
+void system_relax_friction(struct solid_system *system);
 void system_hold_friction(struct solid_system *system, bool sticks);
 void system_slide(struct solid_system *system);
 double system_friction_work(const struct solid_system *system);

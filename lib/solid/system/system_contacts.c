@@ -60,6 +60,13 @@ void system_predict_friction(struct solid_system *system, bool sticks)
     }
 }
 
+void system_relax_friction(struct solid_system *system)
+{
+    for (int64_t c = 0; c < system->contact_count; c++) {
+        friction_relax(&system->contacts[c]);
+    }
+}
+
 void system_hold_friction(struct solid_system *system, bool sticks)
 {
     for (int64_t c = 0; c < system->contact_count; c++) {
