@@ -55,11 +55,8 @@ MUST_CHECK enum status stage_interfaces(const struct stream *stream, const char 
 MUST_CHECK enum status stage_support(struct stream *stream, const struct support_options *options,
                                      struct support_report *report, struct error *error);
 
-/* Steps of these stages: facepoints.x from the faces; support.side and the lists for the radii
- * in the stream. */
+/* A step of these stages: facepoints.x from the faces. */
 MUST_CHECK enum status stage_face_points(struct stream *stream, struct error *error);
-MUST_CHECK enum status stage_lists(struct stream *stream, const struct support_options *options,
-                                   struct support_report *report, struct error *error);
 
 /* Make the lists and the sections of shapefn again, with the recorded settings and these sides of the
  * cells. */

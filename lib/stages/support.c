@@ -107,21 +107,7 @@ static enum status places_of_face_points(const struct stream *stream, const stru
     return STATUS_OK;
 }
 
-enum status stage_support(struct stream *stream, const struct support_options *options,
-                          struct support_report *report, struct error *error)
-{
-    struct support_options actual = *options;
-    struct cells cells;
-    sections_remove(stream, MADE_WITH_SUPPORT, MADE_WITH_SHAPES);
-    RETURN_IF_ERROR(stream_cells(stream, false, &cells, error));
-    if (cells.count == 0) {
-        actual.visibility = VISIBILITY_DISTANCE;
-    }
-    RETURN_IF_ERROR(put_radii(stream, &actual, cells.node_count, cells.x, error));
-    return stage_lists(stream, &actual, report, error);
-}
-
-enum status stage_lists(struct stream *stream, const struct support_options *options,
+static enum status stage_lists(struct stream *stream, const struct support_options *options,
                         struct support_report *report, struct error *error)
 {
     FREED_BY(support_space_free) struct support_space space = {0};
@@ -158,6 +144,20 @@ enum status stage_lists(struct stream *stream, const struct support_options *opt
                              .prefix = "node",
                              .called = "nodes"};
     return put_lists(stream, &actual, &space, &listed, report, error);
+}
+
+enum status stage_support(struct stream *stream, const struct support_options *options,
+                          struct support_report *report, struct error *error)
+{
+    struct support_options actual = *options;
+    struct cells cells;
+    sections_remove(stream, MADE_WITH_SUPPORT, MADE_WITH_SHAPES);
+    RETURN_IF_ERROR(stream_cells(stream, false, &cells, error));
+    if (cells.count == 0) {
+        actual.visibility = VISIBILITY_DISTANCE;
+    }
+    RETURN_IF_ERROR(put_radii(stream, &actual, cells.node_count, cells.x, error));
+    return stage_lists(stream, &actual, report, error);
 }
 
 /* ---- sides of the interfaces at which supports stop ---- */

@@ -187,18 +187,15 @@ static void mark_hanging(const struct search *search, int64_t facet, int32_t bod
 enum status cells_find_hanging(const struct cells *cells, int64_t named_count, const int32_t *named,
                                struct hanging_nodes *joined, struct hanging_nodes *apart, struct error *error)
 {
-    enum status status;
     int dim = cells->dim;
-    struct faces boundary = {0};
-    struct search search = {0};
-    int32_t *body = NULL;
-    int8_t *mark = NULL;
+    FREED_BY(faces_free) struct faces boundary = {0};
+    FREED_BY(search_free) struct search search = {0};
     *joined = *apart = (struct hanging_nodes){0};
-    TRY(faces_build(cells, true, &boundary, error));
-    TRY(search_build(cells, &boundary, &search, error));
-    TRY(mark_named(&search, named_count, named, error));
-    TRY(NEW_ARRAY(&body, cells->node_count, error));
-    TRY(NEW_ARRAY(&mark, cells->node_count, error));
+    RETURN_IF_ERROR(faces_build(cells, true, &boundary, error));
+    RETURN_IF_ERROR(search_build(cells, &boundary, &search, error));
+    RETURN_IF_ERROR(mark_named(&search, named_count, named, error));
+    NEW_SCRATCH(int32_t, body, cells->node_count, error);
+    NEW_SCRATCH(int8_t, mark, cells->node_count, error);
     set_join_cells(cells->node_count, cells->count, dim + 1, cells->node, body);
     for (int64_t f = 0; f < boundary.count; f++) {
         mark_hanging(&search, f, body, mark);
@@ -209,9 +206,5 @@ enum status cells_find_hanging(const struct cells *cells, int64_t named_count, c
             memcpy(of->place, cells->x + n * dim, (size_t)dim * sizeof *of->place);
         }
     }
-done:
-    faces_free(&boundary);
-    search_free(&search);
-    FREE_ALL(body, mark);
-    return status;
+    return STATUS_OK;
 }

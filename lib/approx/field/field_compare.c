@@ -174,19 +174,17 @@ static enum status drop_outside(const struct nodal_field *a, const struct nodal_
 static enum status interpolate(const struct nodal_field *a, const struct nodal_field *b, bool skip,
                                struct field_comparison *comparison, double *reference, struct error *error)
 {
-    enum status status;
     const struct support_options usual = support_defaults(a->cells.dim);
     const struct support_options *support = b->parameters != NULL ? b->support : &usual;
-    struct field_table table = {0};
-    double *spacing = NULL, *radius = NULL, *points = NULL, *values = NULL;
-    TRY(NEW_ARRAY(&spacing, b->cells.node_count, error));
-    TRY(NEW_ARRAY(&points, a->cells.node_count * a->cells.dim, error));
-    TRY(NEW_ARRAY(&values, a->cells.node_count * a->cols, error));
-    TRY(field_spacing(&b->cells, spacing, error));
-    TRY(drop_outside(a, b, spacing, skip, comparison, points, error));
-    TRY(NEW_ARRAY(&radius, b->cells.node_count, error));
-    TRY(support_radii(&usual, b->cells.node_count, spacing, radius, error));
-    TRY(field_table_build(support, b->parameters != NULL ? b->shapes : NULL, &b->cells,
+    FREED_BY(field_table_free) struct field_table table = {0};
+    NEW_SCRATCH(double, spacing, b->cells.node_count, error);
+    NEW_SCRATCH(double, radius, b->cells.node_count, error);
+    NEW_SCRATCH(double, points, a->cells.node_count * a->cells.dim, error);
+    NEW_SCRATCH(double, values, a->cells.node_count * a->cols, error);
+    RETURN_IF_ERROR(field_spacing(&b->cells, spacing, error));
+    RETURN_IF_ERROR(drop_outside(a, b, spacing, skip, comparison, points, error));
+    RETURN_IF_ERROR(support_radii(&usual, b->cells.node_count, spacing, radius, error));
+    RETURN_IF_ERROR(field_table_build(support, b->parameters != NULL ? b->shapes : NULL, &b->cells,
                           b->parameters != NULL ? b->radius : radius, comparison->count, points,
                           "nodes of A within B", &table, error));
     field_evaluate(comparison->count, table.lists.ptr, table.lists.idx, table.phi, b->cols,
@@ -195,10 +193,7 @@ static enum status interpolate(const struct nodal_field *a, const struct nodal_f
         memcpy(reference + comparison->node[i] * b->cols, values + i * b->cols,
                (size_t)b->cols * sizeof *values);
     }
-done:
-    field_table_free(&table);
-    FREE_ALL(spacing, radius, points, values);
-    return status == STATUS_VERDICT ? STATUS_INPUT : status; /* not comparable is not "differs" */
+    return STATUS_OK;
 }
 
 enum status field_compare(const struct nodal_field *a, const struct nodal_field *b, const bool *chosen,
@@ -227,7 +222,8 @@ enum status field_compare(const struct nodal_field *a, const struct nodal_field 
             memcpy(reference + node * cols, b->values + match[node] * cols, (size_t)cols * sizeof(double));
         }
     } else {
-        RETURN_IF_ERROR(interpolate(a, b, skip_outside, comparison, reference, error));
+        enum status status = interpolate(a, b, skip_outside, comparison, reference, error);
+        RETURN_IF_ERROR(status == STATUS_VERDICT ? STATUS_INPUT : status); /* not comparable is not "differs" */
     }
     differences(count, cols, a->values, reference, comparison->difference);
     return STATUS_OK;

@@ -193,22 +193,22 @@ static enum status set_nodes(struct cutting *cutting, struct error *error)
     return STATUS_OK;
 }
 
+static void cutting_free(struct cutting *cutting)
+{
+    FREE_ALL(cutting->x, cutting->cut_node, cutting->between);
+}
+
 enum status lattice_cells(const struct lattice *lattice, struct label_cells *mesh, bool **between,
                           struct error *error)
 {
-    struct cutting cutting = {.lattice = lattice, .mesh = mesh};
-    enum status status;
+    FREED_BY(cutting_free) struct cutting cutting = {.lattice = lattice, .mesh = mesh};
     *mesh = (struct label_cells){.dim = lattice->dim, .unsized = lattice->unsized};
-    TRY(set_nodes(&cutting, error));
+    RETURN_IF_ERROR(set_nodes(&cutting, error));
     for (int64_t c = 0; c < lattice->cell_count; c++) {
-        TRY(cut_cell(&cutting, lattice->cell + c * (lattice->dim + 1), error));
+        RETURN_IF_ERROR(cut_cell(&cutting, lattice->cell + c * (lattice->dim + 1), error));
     }
-    mesh->x = cutting.x;
+    mesh->x = array_take(&cutting.x);
     mesh->node_count = cutting.node_count;
-    cutting.x = NULL;
-    TRY(label_cells_compact(mesh, error));
-done:
-    FREE_ALL(cutting.x, cutting.cut_node);
-    *between = cutting.between;
-    return status;
+    *between = array_take(&cutting.between);
+    return label_cells_compact(mesh, error);
 }

@@ -48,17 +48,22 @@ static void fit(struct shaping *shaping, double far, double least, bool around)
     }
 }
 
+static void shaping_free(struct shaping *shaping)
+{
+    FREE_ALL(shaping->place, shaping->off);
+    star_free(&shaping->star);
+}
+
 enum status label_cells_improve(const struct labels *labels, const struct label_cells_options *options,
                                 const struct label_cells_kept *kept, struct label_cells *mesh,
                                 struct error *error)
 {
-    enum status status;
     double voxel = labels_voxel(labels);
-    struct shaping shaping = {
+    FREED_BY(shaping_free) struct shaping shaping = {
         .labels = labels, .keep = options->keep, .kept = kept, .mesh = mesh, .voxel = voxel};
-    TRY(star_make(mesh, kept->wanted, &shaping.star, error));
-    TRY(NEW_ARRAY(&shaping.place, mesh->node_count * mesh->dim, error));
-    TRY(NEW_ARRAY(&shaping.off, mesh->node_count, error));
+    RETURN_IF_ERROR(star_make(mesh, kept->wanted, &shaping.star, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&shaping.place, mesh->node_count * mesh->dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&shaping.off, mesh->node_count, error));
     for (int64_t i = 0; i < mesh->node_count * mesh->dim; i++) {
         shaping.place[i] = NAN;
     }
@@ -73,11 +78,8 @@ enum status label_cells_improve(const struct labels *labels, const struct label_
     fit(&shaping, LABEL_CELLS_NEAR * voxel, 1.0, true);
     label_cells_begin(options, "correcting volumes");
     find_places(&shaping, true);
-    TRY(label_cells_volumes(&shaping, error));
+    RETURN_IF_ERROR(label_cells_volumes(&shaping, error));
     label_cells_repair(&shaping, 1.0);
     find_places(&shaping, false);
-done:
-    FREE_ALL(shaping.place, shaping.off);
-    star_free(&shaping.star);
-    return status;
+    return STATUS_OK;
 }

@@ -158,25 +158,29 @@ static void keep_bodies(struct label_cells_keeping *keeping, bool largest_only)
     }
 }
 
+static void keeping_free(struct label_cells_keeping *keeping)
+{
+    FREE_ALL(keeping->across, keeping->group, keeping->stack, keeping->from, keeping->wanted, keeping->apart);
+}
+
 enum status label_cells_keep(const struct labels *labels, const struct label_cells_options *options,
                              const bool *between, struct label_cells *mesh, struct label_cells_kept *kept,
                              struct error *error)
 {
-    enum status status;
     int dim = mesh->dim;
     int64_t count = mesh->cell_count;
     int32_t bodies = 0;
-    struct label_cells_star star = {0};
-    struct label_cells_keeping keeping = {.mesh = mesh, .between = between, .cells = label_cells_view(mesh)};
+    FREED_BY(star_free) struct label_cells_star star = {0};
+    FREED_BY(keeping_free) struct label_cells_keeping keeping = {.mesh = mesh, .between = between, .cells = label_cells_view(mesh)};
     *kept = (struct label_cells_kept){0};
-    TRY(NEW_ARRAY(&kept->dropped, labels->count, error));
-    TRY(NEW_ARRAY(&keeping.across, count * (dim + 1), error));
-    TRY(NEW_ARRAY(&keeping.wanted, count, error));
-    TRY(NEW_ARRAY(&keeping.group, count, error));
-    TRY(NEW_ARRAY(&keeping.stack, count, error));
-    TRY(NEW_ARRAY(&keeping.from, count, error));
-    TRY(cells_across(&keeping.cells, keeping.across, error));
-    TRY(star_make(mesh, NULL, &star, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&kept->dropped, labels->count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&keeping.across, count * (dim + 1), error));
+    RETURN_IF_ERROR(NEW_ARRAY(&keeping.wanted, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&keeping.group, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&keeping.stack, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&keeping.from, count, error));
+    RETURN_IF_ERROR(cells_across(&keeping.cells, keeping.across, error));
+    RETURN_IF_ERROR(star_make(mesh, NULL, &star, error));
     for (int64_t c = 0; c < count; c++) {
         keeping.wanted[c] = options->keep[mesh->label[c]];
         keeping.group[c] = -1;
@@ -194,17 +198,14 @@ enum status label_cells_keep(const struct labels *labels, const struct label_cel
             label_cells_flood(&keeping, c, bodies++, -1);
         }
     }
-    TRY(label_cells_cut_apart(&keeping, &star, error));
+    RETURN_IF_ERROR(label_cells_cut_apart(&keeping, &star, error));
     mesh->facet_count = find_facets(&keeping, NULL, NULL);
-    TRY(NEW_ARRAY(&mesh->facet, mesh->facet_count * dim, error));
-    TRY(NEW_ARRAY(&mesh->side, mesh->facet_count * 2, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&mesh->facet, mesh->facet_count * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&mesh->side, mesh->facet_count * 2, error));
     find_facets(&keeping, mesh->facet, mesh->side);
-done:
-    kept->wanted = keeping.wanted;
-    kept->apart = keeping.apart;
-    star_free(&star);
-    FREE_ALL(keeping.across, keeping.group, keeping.stack, keeping.from);
-    return status;
+    kept->wanted = array_take(&keeping.wanted);
+    kept->apart = array_take(&keeping.apart);
+    return STATUS_OK;
 }
 
 void label_cells_kept_free(struct label_cells_kept *kept)

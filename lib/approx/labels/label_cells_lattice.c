@@ -258,27 +258,28 @@ static enum status count_levels(const struct label_cells_options *options, struc
     return STATUS_OK;
 }
 
+static void points_free(struct points *points)
+{
+    FREE_ALL(points->label, points->near, points->node);
+}
+
 enum status lattice_make(const struct labels *labels, const struct label_cells_options *options,
                          struct lattice *lattice, struct error *error)
 {
-    enum status status;
-    struct points points = {.lattice = lattice, .levels = 1, .spacing = options->spacing, .error = error};
+    FREED_BY(points_free) struct points points = {.lattice = lattice, .levels = 1, .spacing = options->spacing, .error = error};
     *lattice = (struct lattice){.labels = labels, .keep = options->keep, .dim = labels->dim};
     if ((options->finest > 0 || options->size != NULL) && labels->dim == 2) {
-        TRY(fail(error, STATUS_INPUT, "%s are for bodies in space, not for slices",
-                 options->finest > 0 ? "finer interfaces" : "sizes"));
+        return fail(error, STATUS_INPUT, "%s are for bodies in space, not for slices",
+                 options->finest > 0 ? "finer interfaces" : "sizes");
     }
-    TRY(count_levels(options, &points, error));
-    TRY(size_points(&points, error));
-    TRY(label_points(&points, error));
+    RETURN_IF_ERROR(count_levels(options, &points, error));
+    RETURN_IF_ERROR(size_points(&points, error));
+    RETURN_IF_ERROR(label_points(&points, error));
     points.marking = labels->dim == 2;
-    TRY(labels->dim == 3 ? add_tetrahedra(&points, options) : add_triangles(&points));
+    RETURN_IF_ERROR(labels->dim == 3 ? add_tetrahedra(&points, options) : add_triangles(&points));
     points.marking = false;
-    TRY(labels->dim == 3 ? STATUS_OK : add_triangles(&points));
-    TRY(make_nodes(&points, error));
-done:
-    FREE_ALL(points.label, points.near, points.node);
-    return status;
+    RETURN_IF_ERROR(labels->dim == 3 ? STATUS_OK : add_triangles(&points));
+    return make_nodes(&points, error);
 }
 
 void lattice_free(struct lattice *lattice)

@@ -10,7 +10,10 @@
 /* Halvings of a move, and of the steps of a search. */
 enum { HALVINGS = 5 };
 
-double shaping_score(const struct shaping *shaping, int64_t cell)
+/* The score of a cell: at least 1 if its angles are within the bounds and its quality
+ * (approx/cells/quality.h) is not poor; its volume over the product of its edges at one corner if it is
+ * inverted. Cells around the body must only not be inverted. */
+static double shaping_score(const struct shaping *shaping, int64_t cell)
 {
     int dim = shaping->mesh->dim;
     const double *x[4];

@@ -163,11 +163,6 @@ struct shaping {
     double *off;   /* node_count: and how far they are from there, m; infinity: there is none near */
 };
 
-/* The score of a cell: at least 1 if its angles are within the bounds and its quality
- * (approx/cells/quality.h) is not poor; its volume over the product of its edges at one corner if it is
- * inverted. Cells around the body must only not be inverted. */
-double shaping_score(const struct shaping *shaping, int64_t cell);
-
 /* Move a node towards `target` as far as no cell at it scores less than before and than `least`. around: also
  * move the nodes around it, those on interfaces on these, and those with others at the same place not.
  * Returns whether it is at the target. */

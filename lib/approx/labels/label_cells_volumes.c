@@ -132,17 +132,21 @@ static void correct_volumes(const struct volumes *volumes)
     }
 }
 
+static void volumes_free(struct volumes *volumes)
+{
+    FREE_ALL(volumes->wanted, volumes->pressure, volumes->matrix, volumes->movable, volumes->free);
+}
+
 enum status label_cells_volumes(const struct shaping *shaping, struct error *error)
 {
-    enum status status;
     const struct labels *labels = shaping->labels;
     int64_t nodes = shaping->mesh->node_count, voxels = labels->size[0] * labels->size[1] * labels->size[2];
-    struct volumes volumes = {.shaping = shaping};
-    TRY(NEW_ARRAY(&volumes.wanted, labels->count, error));
-    TRY(NEW_ARRAY(&volumes.pressure, labels->count, error));
-    TRY(NEW_ARRAY(&volumes.matrix, (int64_t)labels->count * labels->count, error));
-    TRY(NEW_ARRAY(&volumes.movable, nodes, error));
-    TRY(NEW_ARRAY(&volumes.free, nodes, error));
+    FREED_BY(volumes_free) struct volumes volumes = {.shaping = shaping};
+    RETURN_IF_ERROR(NEW_ARRAY(&volumes.wanted, labels->count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&volumes.pressure, labels->count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&volumes.matrix, (int64_t)labels->count * labels->count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&volumes.movable, nodes, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&volumes.free, nodes, error));
     for (int64_t n = 0; n < nodes; n++) {
         volumes.free[n] = volumes.movable[n] = shaping->star.labels[n] >= 2 && !shaping->kept->apart[n] &&
                                                shaping->off[n] <= LABEL_CELLS_NEAR * shaping->voxel;
@@ -157,7 +161,5 @@ enum status label_cells_volumes(const struct shaping *shaping, struct error *err
     for (int sweep = 0; sweep < LABEL_CELLS_SWEEPS && find_pressures(&volumes); sweep++) {
         correct_volumes(&volumes);
     }
-done:
-    FREE_ALL(volumes.wanted, volumes.pressure, volumes.matrix, volumes.movable, volumes.free);
-    return status;
+    return STATUS_OK;
 }

@@ -32,6 +32,11 @@ struct dense_row {
     bool *is_touched;
 };
 
+static void row_free(struct dense_row *row)
+{
+    FREE_ALL(row->value, row->touched, row->is_touched);
+}
+
 static enum status row_add(struct dense_row *row, int32_t node, double value, struct error *error)
 {
     if (!row->is_touched[node]) {
@@ -163,25 +168,22 @@ static enum status build(const struct face_table *table, const struct facet_set 
                          bool at_corner, struct boundary_sides *sides, const struct neighbours *node_lists,
                          const double *node_phi, struct boundary_averages *averages, struct error *error)
 {
-    enum status status;
     int dim = table->dim;
     int64_t corner_count = (sides != NULL ? 2 : 1) * set->count * dim, parts = 0, capacity = 0;
-    struct corner *corners = NULL;
-    int64_t *face_of = NULL;
-    struct dense_row row = {0};
+    FREED_BY(row_free) struct dense_row row = {0};
     *averages = (struct boundary_averages){0};
-    TRY(NEW_ARRAY(&corners, corner_count, error));
-    TRY(NEW_ARRAY(&face_of, set->count, error));
-    TRY(NEW_ARRAY(&row.value, table->node_count, error));
-    TRY(NEW_ARRAY(&row.is_touched, table->node_count, error));
-    TRY(boundary_find_faces(table, set, face_of, error));
-    TRY(collect_parts(table, set, face_of, split, sides, corners, &parts, error));
-    TRY(allocate(dim, parts, corner_count * table->per_face, averages, error));
+    NEW_SCRATCH(struct corner, corners, corner_count, error);
+    NEW_SCRATCH(int64_t, face_of, set->count, error);
+    RETURN_IF_ERROR(NEW_ARRAY(&row.value, table->node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&row.is_touched, table->node_count, error));
+    RETURN_IF_ERROR(boundary_find_faces(table, set, face_of, error));
+    RETURN_IF_ERROR(collect_parts(table, set, face_of, split, sides, corners, &parts, error));
+    RETURN_IF_ERROR(allocate(dim, parts, corner_count * table->per_face, averages, error));
     for (int64_t part = 0, next = 0; part < parts; part++) {
         int32_t node = corners[next].node;
         averages->sample_ptr[part + 1] = averages->sample_ptr[part];
         for (; next < corner_count && corners[next].part == part; next++) {
-            TRY(add_corner(table, set, face_of, &corners[next], part, at_corner,
+            RETURN_IF_ERROR(add_corner(table, set, face_of, &corners[next], part, at_corner,
                            node_lists == NULL ? &row : NULL, averages, error));
         }
         averages->node[part] = node;
@@ -194,14 +196,12 @@ static enum status build(const struct face_table *table, const struct facet_set 
             whole = 1.0;
             put_place(dim, part, table->x + (int64_t)node * dim, averages);
             for (int64_t i = node_lists->ptr[node]; i < node_lists->ptr[node + 1]; i++) {
-                TRY(row_add(&row, node_lists->idx[i], node_phi[i], error));
+                RETURN_IF_ERROR(row_add(&row, node_lists->idx[i], node_phi[i], error));
             }
         }
-        TRY(row_finish(&row, whole, part, &capacity, averages, error));
+        RETURN_IF_ERROR(row_finish(&row, whole, part, &capacity, averages, error));
     }
-done:
-    FREE_ALL(corners, face_of, row.value, row.touched, row.is_touched);
-    return status;
+    return STATUS_OK;
 }
 
 enum status boundary_averages_build(const struct face_table *table, const struct facet_set *set,

@@ -32,9 +32,8 @@ struct tabulation {
 static enum status tabulate(const struct tabulation *table, int64_t first, int64_t last, double *phi,
                             double *dphi, struct error *error)
 {
-    enum status status = STATUS_OK;
     const struct neighbours *lists = table->lists;
-    struct mls_work work = {0};
+    FREED_BY(mls_work_free) struct mls_work work = {0};
     int dim = table->mls->dim;
     for (int64_t p = first; p < last; p++) {
         enum mls_verdict verdict;
@@ -45,21 +44,17 @@ static enum status tabulate(const struct tabulation *table, int64_t first, int64
                                       .widen = lists->widen[p],
                                       .neighbours = lists->idx + pair,
                                       .count = lists->ptr[p + 1] - pair};
-        TRY(mls_evaluate(table->mls, &support, &work, phi + at, dphi != NULL ? dphi + at * dim : NULL,
+        RETURN_IF_ERROR(mls_evaluate(table->mls, &support, &work, phi + at, dphi != NULL ? dphi + at * dim : NULL,
                          &verdict, error));
         if (verdict != MLS_GOOD) {
             char place[96];
             point_text(dim, support.x, place);
-            status =
-                fail(error, STATUS_VERDICT, "%s: row %lld at %s: %s of %s on %lld nodes: widen the support",
+            return fail(error, STATUS_VERDICT, "%s: row %lld at %s: %s of %s on %lld nodes: widen the support",
                      table->what, (long long)p, place, mls_verdict_text(verdict),
                      basis_names[table->mls->basis], (long long)support.count);
-            goto done;
         }
     }
-done:
-    mls_work_free(&work);
-    return status;
+    return STATUS_OK;
 }
 
 enum status shape_table(const struct mls *mls, const double *nodes, const double *radius,

@@ -171,29 +171,26 @@ enum status support_build(const struct support_options *options, const struct su
                           const struct visibility_places *places, int64_t count, const double *x,
                           const char *what, struct support_lists *lists, struct error *error)
 {
-    enum status status;
-    struct index_list all = {0};
+    FREED_BY(index_list_free) struct index_list all = {0};
     *lists = (struct support_lists){.count = count, .widest = 1.0};
     struct search search = {.options = options,
                             .grid = &space->grid,
                             .visibility = space->visibility.grid != NULL ? &space->visibility : NULL,
                             .x = x,
                             .what = what};
-    TRY(NEW_ARRAY(&lists->ptr, count + 1, error));
-    TRY(NEW_ARRAY(&lists->widen, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&lists->ptr, count + 1, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&lists->widen, count, error));
     if (places != NULL) {
         search.places = *places;
     }
-    TRY(check_finite(&search, count, error));
-    TRY(build_chunks(&search, lists, &all, error));
+    RETURN_IF_ERROR(check_finite(&search, count, error));
+    RETURN_IF_ERROR(build_chunks(&search, lists, &all, error));
     lists->idx = array_grow(all.index, all.count, sizeof *all.index); /* release what is not used */
     if (lists->idx == NULL) {
-        TRY(fail_memory(error, "neighbour list"));
+        return fail_memory(error, "neighbour list");
     }
     all.index = NULL;
-done:
-    free(all.index);
-    return status;
+    return STATUS_OK;
 }
 
 void support_free(struct support_lists *lists)

@@ -12,7 +12,7 @@
 
 /* ---- descriptors ---- */
 
-enum status descriptor_read(int descriptor, void *bytes, size_t size, size_t *got, struct error *error)
+static enum status descriptor_read(int descriptor, void *bytes, size_t size, size_t *got, struct error *error)
 {
     ssize_t count;
     do {

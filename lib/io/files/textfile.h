@@ -27,11 +27,6 @@ MUST_CHECK enum status bytefile_read(const char *path, size_t most, struct textf
 /* Release the text; the struct becomes empty. */
 void textfile_free(struct textfile *file);
 
-/* Read up to `size` bytes, > 0; *got receives their number, 0 at the end. STATUS_INPUT for a folder,
- * STATUS_SYSTEM for other failures. */
-MUST_CHECK enum status descriptor_read(int descriptor, void *bytes, size_t size, size_t *got,
-                                       struct error *error);
-
 /* Read to the end, or beyond `most` bytes: (*bytes)[*size], to be freed, also on failure, and ROOM_BEHIND
  * bytes of 0. Unless goes_on is NULL, reading ends where it does not accept the first 64 KiB. */
 enum { ROOM_BEHIND = 8 };

@@ -8,7 +8,7 @@
 #include <stdarg.h>
 #include <string.h>
 
-const struct nifti_type image_types[IMAGE_TYPES] = {
+static const struct nifti_type image_types[] = {
     {IMAGE_UINT8,
      "uint8",
      1,
@@ -77,6 +77,8 @@ const struct nifti_type image_types[IMAGE_TYPES] = {
     {IMAGE_RGB24, "RGB24", 1, 3, 0, UINT8_MAX, {"uint8", "MET_UCHAR"}},
     {IMAGE_RGBA32, "RGBA32", 1, 4, 0, UINT8_MAX, {"uint8", "MET_UCHAR"}},
 };
+
+enum { IMAGE_TYPES = sizeof image_types / sizeof *image_types };
 
 const struct nifti_type *nifti_type(int code)
 {

@@ -29,8 +29,6 @@ struct nifti_type {
                              type comes first. */
 };
 enum number_format { NUMBERS_OF_NRRD, NUMBERS_OF_METAIMAGE, NUMBERS_OF_VTU, NUMBERS_OF_VTK };
-enum { IMAGE_TYPES = 12 };
-extern const struct nifti_type image_types[IMAGE_TYPES];
 
 /* NULL for a type that is not read. */
 const struct nifti_type *nifti_type(int code);
@@ -117,5 +115,3 @@ MUST_CHECK enum status image_bytes_read(int descriptor, bool any, struct image_b
                                         struct error *error);
 void image_bytes_free(struct image_bytes *file);
 
-/* What follows is compressed by gzip or zlib: keep what it holds. */
-MUST_CHECK enum status image_bytes_unpack(struct image_bytes *file, struct error *error);

@@ -54,7 +54,8 @@ static enum status inflate_all(const unsigned char *packed, size_t left, struct 
                       file->size);
 }
 
-enum status image_bytes_unpack(struct image_bytes *file, struct error *error)
+/* What follows is compressed by gzip or zlib: keep what it holds. */
+static enum status image_bytes_unpack(struct image_bytes *file, struct error *error)
 {
     struct image_bytes unpacked = {.was_packed = true};
     enum status status = inflate_all(file->bytes + file->at, file->size - file->at, &unpacked, error);

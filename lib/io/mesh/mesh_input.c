@@ -68,6 +68,14 @@ static void next_bytes(struct msh_reader *r, const char *what, size_t size, void
     r->at += size;
 }
 
+static int64_t within(struct msh_reader *r, const char *what, int64_t number, int64_t least, int64_t most)
+{
+    if (number < least || number > most) {
+        msh_fail(r, "%s: %jd is not within [%jd, %jd]", what, number, least, most);
+    }
+    return r->status == STATUS_OK ? number : least;
+}
+
 static int64_t whole(struct msh_reader *r, const char *what, bool wide, int64_t least, int64_t most)
 {
     int64_t number = 0, length;
@@ -85,7 +93,7 @@ static int64_t whole(struct msh_reader *r, const char *what, bool wide, int64_t 
         next_bytes(r, what, sizeof narrow, &narrow);
         number = narrow;
     }
-    return input_within(r, what, number, least, most);
+    return within(r, what, number, least, most);
 }
 
 int64_t msh_int(struct msh_reader *r, const char *what, int64_t least, int64_t most)
@@ -141,15 +149,7 @@ int64_t input_whole(struct msh_reader *r, const char *what, const char *word, in
     if (number_parse_integer(word, end, -INT64_MAX, INT64_MAX, &number) != end) {
         msh_fail(r, "%s: '%.*s' is not a whole number", what, length < 64 ? (int)length : 64, word);
     }
-    return input_within(r, what, number, least, most);
-}
-
-int64_t input_within(struct msh_reader *r, const char *what, int64_t number, int64_t least, int64_t most)
-{
-    if (number < least || number > most) {
-        msh_fail(r, "%s: %jd is not within [%jd, %jd]", what, number, least, most);
-    }
-    return r->status == STATUS_OK ? number : least;
+    return within(r, what, number, least, most);
 }
 
 double input_real(struct msh_reader *r, const char *what, const char *word, int64_t length)

@@ -239,21 +239,22 @@ static int64_t most_facets(const struct mesh_draft *draft)
     return most * 2;
 }
 
+static void gathering_free(struct gathering *g)
+{
+    FREE_ALL(g->faces.face, g->group_ptr, g->group_idx, g->face_stamp, g->node_stamp);
+}
+
 enum status mesh_build_facets(struct mesh_draft *draft)
 {
-    enum status status = STATUS_OK;
     struct mesh *mesh = draft->mesh;
-    struct gathering g = {.draft = draft};
-    TRY(make_faces(mesh, &g.faces, draft->error));
-    TRY(count_boundary(&g));
-    TRY(sort_by_group(&g));
-    TRY(NEW_ARRAY(&g.face_stamp, mesh->cell_count * (mesh->dim + 1), draft->error));
-    TRY(NEW_ARRAY(&g.node_stamp, mesh->node_count, draft->error));
-    TRY(NEW_ARRAY(&mesh->facets, most_facets(draft) * mesh->dim, draft->error));
-    TRY(NEW_ARRAY(&mesh->facet_set, most_facets(draft), draft->error));
-    TRY(NEW_ARRAY(&mesh->set_ptr, draft->msh->group_count + 2, draft->error));
-    TRY(gather_groups(&g));
-done:
-    FREE_ALL(g.faces.face, g.group_ptr, g.group_idx, g.face_stamp, g.node_stamp);
-    return status;
+    FREED_BY(gathering_free) struct gathering g = {.draft = draft};
+    RETURN_IF_ERROR(make_faces(mesh, &g.faces, draft->error));
+    RETURN_IF_ERROR(count_boundary(&g));
+    RETURN_IF_ERROR(sort_by_group(&g));
+    RETURN_IF_ERROR(NEW_ARRAY(&g.face_stamp, mesh->cell_count * (mesh->dim + 1), draft->error));
+    RETURN_IF_ERROR(NEW_ARRAY(&g.node_stamp, mesh->node_count, draft->error));
+    RETURN_IF_ERROR(NEW_ARRAY(&mesh->facets, most_facets(draft) * mesh->dim, draft->error));
+    RETURN_IF_ERROR(NEW_ARRAY(&mesh->facet_set, most_facets(draft), draft->error));
+    RETURN_IF_ERROR(NEW_ARRAY(&mesh->set_ptr, draft->msh->group_count + 2, draft->error));
+    return gather_groups(&g);
 }

@@ -188,7 +188,6 @@ static inline void input_at(struct msh_reader *r, const char *section, int64_t l
  * exponent D. */
 int64_t input_whole(struct msh_reader *r, const char *what, const char *word, int64_t length, int64_t least,
                     int64_t most);
-int64_t input_within(struct msh_reader *r, const char *what, int64_t number, int64_t least, int64_t most);
 double input_real(struct msh_reader *r, const char *what, const char *word, int64_t length);
 
 /* The number of gmsh of the elements of first or second order with this dimension and number of nodes; 0:

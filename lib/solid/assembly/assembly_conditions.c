@@ -152,24 +152,20 @@ static enum status add_all(const struct prescription *p, const struct boundary_a
 static enum status add_penalties(struct prescription *p, struct error *error)
 {
     const struct facet_set *set = &p->condition->facets;
-    enum status status;
-    struct boundary_averages points = {0};
+    FREED_BY(boundary_averages_free) struct boundary_averages points = {0};
     double area = 0.0, wave;
-    TRY(boundary_points_build(&p->input->face_table, set, &points, error));
+    RETURN_IF_ERROR(boundary_points_build(&p->input->face_table, set, &points, error));
     for (int64_t a = 0; a < points.count; a++) {
         area += points.area[a];
     }
     area /= (double)set->count;
     p->penalties = true;
     p->layer = p->input->cells.dim == 2 ? area : sqrt(2.0 * area);
-    TRY(assembly_penalty_modulus(p->input, set, constraint_penalty_factor, &p->modulus, &wave, error));
+    RETURN_IF_ERROR(assembly_penalty_modulus(p->input, set, constraint_penalty_factor, &p->modulus, &wave, error));
     for (int64_t a = 0; a < points.count; a++) {
-        TRY(add_average(p, &points, a, error));
+        RETURN_IF_ERROR(add_average(p, &points, a, error));
     }
-done:
-    p->penalties = false;
-    boundary_averages_free(&points);
-    return status;
+    return STATUS_OK;
 }
 
 /* Add the mean over side a, along the axes for which other conditions hold boundary averages of its group;
@@ -223,26 +219,20 @@ static enum status build_averages(const struct prescription *p, struct boundary_
 /* Add constraint rows on boundary averages, then on means over flat sides. */
 static enum status add_averages(struct prescription *p, struct error *error)
 {
-    enum status status;
-    struct boundary_averages averages = {0};
-    struct boundary_sides sides = {0};
-    TRY(build_averages(p, &averages, &sides, error));
-    TRY(NEW_ARRAY(&p->shared, sides.group_count * p->input->cells.dim, error));
-    TRY(add_all(p, &averages, &sides, sides.node_average_count, error));
+    FREED_BY(boundary_averages_free) struct boundary_averages averages = {0};
+    FREED_BY(boundary_sides_free) struct boundary_sides sides = {0};
+    RETURN_IF_ERROR(build_averages(p, &averages, &sides, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&p->shared, sides.group_count * p->input->cells.dim, error));
+    RETURN_IF_ERROR(add_all(p, &averages, &sides, sides.node_average_count, error));
     if (p->condition->kind == CONDITION_NORMAL) {
-        TRY(note_sliding(p, &sides, error));
+        RETURN_IF_ERROR(note_sliding(p, &sides, error));
     }
     for (int64_t a = sides.node_average_count; a < averages.count; a++) {
         if (sides.flat[a]) {
-            TRY(add_side(p, &averages, &sides, a, error));
+            RETURN_IF_ERROR(add_side(p, &averages, &sides, a, error));
         }
     }
-done:
-    free(p->shared);
-    p->shared = NULL;
-    boundary_averages_free(&averages);
-    boundary_sides_free(&sides);
-    return status;
+    return STATUS_OK;
 }
 
 /* Add constraint rows on values at the nodes of facets or of sets. */
@@ -264,12 +254,11 @@ static enum status add_nodes(struct prescription *p, struct error *error)
 
 static enum status add_condition(struct prescription *p, struct error *note, struct error *error)
 {
-    enum status status = STATUS_OK;
     int dim = p->input->cells.dim;
     const struct condition *condition = p->condition;
-    struct edge_paths paths = {0};
+    FREED_BY(edge_paths_free) struct edge_paths paths = {0};
     if (condition->kind == CONDITION_TABLE) {
-        TRY(edge_paths_build(&p->input->cells, condition->row_count, 2 * dim, condition->rows,
+        RETURN_IF_ERROR(edge_paths_build(&p->input->cells, condition->row_count, 2 * dim, condition->rows,
                              condition->unit, &paths, error));
         p->fit = (struct scattered_fit){.dim = dim,
                                         .value_count = dim,
@@ -278,25 +267,24 @@ static enum status add_condition(struct prescription *p, struct error *note, str
                                         .row = condition->rows,
                                         .unit = condition->unit,
                                         .paths = &paths};
-        TRY(scattered_fit_build(&p->fit, error));
-        TRY(prescription_check_table(p, error));
-        TRY(NEW_ARRAY(&p->spacing, p->input->cells.node_count, error));
-        TRY(field_spacing(&p->input->cells, p->spacing, error));
+        RETURN_IF_ERROR(scattered_fit_build(&p->fit, error));
+        RETURN_IF_ERROR(prescription_check_table(p, error));
+        RETURN_IF_ERROR(NEW_ARRAY(&p->spacing, p->input->cells.node_count, error));
+        RETURN_IF_ERROR(field_spacing(&p->input->cells, p->spacing, error));
     }
     if (condition->facets.count > 0 && assembly_holds_averages(p->input)) {
-        TRY(add_averages(p, error));
-        TRY(add_penalties(p, error));
+        RETURN_IF_ERROR(add_averages(p, error));
+        RETURN_IF_ERROR(add_penalties(p, error));
     } else {
-        TRY(add_nodes(p, error));
+        RETURN_IF_ERROR(add_nodes(p, error));
     }
-    if (condition->kind == CONDITION_TABLE) {
-        TRY(prescription_check_fit(p, note, error));
-    }
-done:
-    edge_paths_free(&paths);
+    return condition->kind == CONDITION_TABLE ? prescription_check_fit(p, note, error) : STATUS_OK;
+}
+
+static void prescription_free(struct prescription *p)
+{
     scattered_fit_free(&p->fit);
-    free(p->spacing);
-    return status;
+    FREE_ALL(p->spacing, p->shared);
 }
 
 enum status assembly_add_conditions(const struct assembly *input, struct solid_system *system,
@@ -310,7 +298,7 @@ enum status assembly_add_conditions(const struct assembly *input, struct solid_s
      * it up to its rim. */
     for (int directions = 1; directions <= input->cells.dim; directions++) {
         for (int64_t i = 0; i < input->condition_count; i++) {
-            struct prescription p = {.input = input,
+            FREED_BY(prescription_free) struct prescription p = {.input = input,
                                      .condition = &input->conditions[i],
                                      .system = system,
                                      .nodal_constraints = &nodal_constraints,

@@ -192,20 +192,19 @@ static enum status check_rows(const struct point_condition *p, int64_t first, st
 
 static enum status add_condition(struct point_condition *p, struct error *error)
 {
-    enum status status;
     int64_t first = p->system->rows.count;
-    TRY(compare_rows(p, error));
-    TRY(measure_nodes(p, error));
-    TRY(set_energy(p, error));
+    RETURN_IF_ERROR(compare_rows(p, error));
+    RETURN_IF_ERROR(measure_nodes(p, error));
+    RETURN_IF_ERROR(set_energy(p, error));
     for (int64_t i = 0; i < p->measured->count; i++) {
-        TRY(add_point(p, i, error));
+        RETURN_IF_ERROR(add_point(p, i, error));
     }
-    if (p->system->rows.count > first) {
-        TRY(check_rows(p, first, error));
-    }
-done:
+    return p->system->rows.count > first ? check_rows(p, first, error) : STATUS_OK;
+}
+
+static void point_condition_free(struct point_condition *p)
+{
     FREE_ALL(p->volume, p->shear);
-    return status;
 }
 
 enum status assembly_add_points(const struct assembly *input, struct solid_system *system,
@@ -213,7 +212,7 @@ enum status assembly_add_points(const struct assembly *input, struct solid_syste
 {
     for (int64_t i = 0; i < input->condition_count; i++) {
         if (input->conditions[i].kind == CONDITION_POINTS) {
-            struct point_condition p = {.input = input,
+            FREED_BY(point_condition_free) struct point_condition p = {.input = input,
                                         .condition = &input->conditions[i],
                                         .measured = &input->conditions[i].measured,
                                         .system = system,

@@ -223,7 +223,8 @@ static void constraint_values(const struct constraint *constraint, const double 
     }
 }
 
-void constraint_spread(const struct constraint *constraint, const double *amount, double *u)
+/* u += M^-1 G^T amount[rows->count]. */
+static void constraint_spread(const struct constraint *constraint, const double *amount, double *u)
 {
     constraint_nodes_spread(&constraint->nodes, amount, u);
 }

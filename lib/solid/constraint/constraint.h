@@ -94,9 +94,6 @@ MUST_CHECK enum status constraint_build(const struct constraint_rows *rows, int6
                                         struct error *error);
 void constraint_free(struct constraint *constraint);
 
-/* u += M^-1 G^T amount[rows->count]. */
-void constraint_spread(const struct constraint *constraint, const double *amount, double *u);
-
 /* Only factor G M^-1 G^T, M diagonal; `least` and `shift` as of envelope_factorise. */
 MUST_CHECK enum status constraint_factorise(const struct constraint_rows *rows, int64_t node_count,
                                             const double *mass, double least, double shift,

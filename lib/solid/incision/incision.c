@@ -11,7 +11,7 @@ static const double along_face = 0.87, near_face = 0.4;
 
 /* ---- values at nodes ---- */
 
-void cut_free(struct cut *cut)
+static void cut_free(struct cut *cut)
 {
     FREE_ALL(cut->value[0], cut->value[1], cut->shortest, cut->longest, cut->face_normal, cut->face);
 }
@@ -86,7 +86,8 @@ static void evaluate_node(struct cut *cut, int64_t n)
     }
 }
 
-enum status cut_evaluate(struct cut *cut, struct error *error)
+/* Measure edges and evaluate the nodes that have no values yet. */
+static enum status cut_evaluate(struct cut *cut, struct error *error)
 {
     int64_t needed = cut->body->node_count;
     RETURN_IF_ERROR(RESIZE_ARRAY(&cut->value[0], needed, error));
@@ -102,7 +103,7 @@ enum status cut_evaluate(struct cut *cut, struct error *error)
 
 /* ---- cells and faces ---- */
 
-bool cut_is_near(const struct cut *cut, int64_t cell)
+static bool cut_is_near(const struct cut *cut, int64_t cell)
 {
     int corners = cut->body->dim + 1;
     for (int k = 0; k < corners; k++) {
@@ -136,7 +137,8 @@ int cut_side(const struct cut *cut, int64_t cell)
     return sheet_at(cut->sheet, middle, 2.0 * reach, &place) && place.height < 0 ? -1 : 1;
 }
 
-enum status cut_faces(struct cut *cut, struct error *error)
+/* List the faces near the sheet. */
+static enum status cut_faces(struct cut *cut, struct error *error)
 {
     const struct division *body = cut->body;
     int corners = body->dim + 1;

@@ -36,21 +36,11 @@ struct crossings {
     struct crossing *item; /* sorted by nodes */
 };
 
-/* Measure edges and evaluate the nodes that have no values yet. */
-MUST_CHECK enum status cut_evaluate(struct cut *cut, struct error *error);
-
 /* Take a node to be on the sheet, at the extent of its place. */
 void cut_lay(struct cut *cut, int64_t node);
 
-void cut_free(struct cut *cut);
-
-bool cut_is_near(const struct cut *cut, int64_t cell);
-
 /* On which side of the sheet a cell is: 1 in front, -1 behind, 0: both, or far. */
 int cut_side(const struct cut *cut, int64_t cell);
-
-/* List the faces near the sheet. */
-MUST_CHECK enum status cut_faces(struct cut *cut, struct error *error);
 
 /* Whether face i of two, with the next one, parts a cell in front from one behind, all its nodes on the
  * sheet. */
