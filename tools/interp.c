@@ -60,7 +60,7 @@ static const char usage[] =
 
 /* Points with their neighbours and shape functions. */
 struct evaluated {
-    struct recorded solved; /* the computed field whose shape functions these are, if any */
+    struct field_shapes solved; /* the computed field whose shape functions these are, if any */
     struct points at;
     int64_t *row; /* at.count: of the file; owned */
     struct field_table table;
@@ -151,27 +151,22 @@ static enum status drop_outside(const struct tool *tool, const struct cells *cel
 
 /* Make supports and shape functions at the points: integration points of the stream, or points of a file,
  * which may be outside; the shape functions are those of the computed field, or chosen by options. */
-static enum status make_table(const struct tool *tool, const struct recorded *known,
+static enum status make_table(const struct tool *tool, const struct field_shapes *known,
                               const struct support_options *support, const struct stream *stream, bool skip,
                               const char *file, struct evaluated *points, struct error *error)
 {
     struct cells cells;
-    const struct mls *shapes = NULL;
+    struct field_shapes fit = {.support = *support, .shapes = support->mls};
     RETURN_IF_ERROR(stream_cells(stream, false, &cells, error));
     NEW_SCRATCH(double, spacing, cells.node_count, error);
     NEW_SCRATCH(double, radius, cells.node_count, error);
     RETURN_IF_ERROR(field_spacing(&cells, spacing, error));
-    if (known->radius != NULL) {
-        support = &known->support;
-        shapes = &known->shapes;
-        memcpy(radius, known->radius, (size_t)cells.node_count * sizeof *radius);
-    } else {
-        RETURN_IF_ERROR(support_radii(support, cells.node_count, spacing, radius, error));
-    }
+    RETURN_IF_ERROR(support_radii(support, cells.node_count, spacing, radius, error));
+    fit.radius = radius;
     if (file != NULL) {
         RETURN_IF_ERROR(drop_outside(tool, &cells, spacing, skip, file, points, error));
     }
-    return field_table_build(support, shapes, &cells, radius, points->at.count, points->at.x,
+    return field_table_build(known->radius != NULL ? known : &fit, &cells, points->at.count, points->at.x,
                              file != NULL ? file : "points.x", &points->table, error);
 }
 
@@ -257,7 +252,7 @@ static void find_points(const struct tool *tool, struct stream *stream, int dim,
     if (tool_first_given(tool, choose_supports) == NULL) {
         TOOL_TRY(tool, stage_recorded(stream, "parameters", &points->solved, &error));
     }
-    struct recorded known = points->solved;
+    struct field_shapes known = points->solved;
     if (file == NULL) {
         const struct section *radius = stream_find(stream, "support.radius");
         stage_fill(tool, stream, "ipoints");

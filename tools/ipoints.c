@@ -90,7 +90,7 @@ static struct ipoints_options parse(const struct tool *tool, const struct mls *m
 /* The options for this stream, with its dimension and recorded shape functions. */
 static struct ipoints_options parse_for(const struct tool *tool, const struct stream *stream)
 {
-    struct recorded recorded;
+    struct field_shapes recorded;
     TOOL_TRY(tool, stage_recorded(stream, "support", &recorded, &error));
     struct ipoints_options ipoints = parse(tool, &recorded.support.mls);
     ipoints.refinement.support.visibility = recorded.support.visibility;

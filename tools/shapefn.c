@@ -38,7 +38,7 @@ int main(int argc, char *argv[])
     struct tool tool;
     FREED_BY(stream_free) struct stream stream = {0};
     struct mls mls = mls_default(0);
-    struct recorded recorded;
+    struct field_shapes recorded;
     tool_begin(&tool, usage, 0, 1, argc, argv);
     mls_parse(&tool, &mls);
     tool_read(&tool, tool.operands[0], &stream);

@@ -240,13 +240,11 @@ static void note_not_finite(const struct tool *tool, const struct image *image, 
 static void build_motion(const struct tool *tool, const struct nodal_field *u, struct motion *motion)
 {
     struct error error;
-    struct motion_source source = {u->support, u->shapes, u->radius, u->parameters};
-    enum status status =
-        motion_build(&u->cells, u->values, false, u->parameters != NULL ? &source : NULL, motion, &error);
+    enum status status = motion_build(u, false, motion, &error);
     if (status == STATUS_VERDICT) {
         tool_note(tool, "displacement taken as linear in each cell: %s", error.text);
         motion_free(motion);
-        status = motion_build(&u->cells, u->values, true, NULL, motion, &error);
+        status = motion_build(u, true, motion, &error);
     }
     tool_check(tool, status, &error);
 }

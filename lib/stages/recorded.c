@@ -69,7 +69,7 @@ static void describe_mls(const struct mls *mls, const char *prefix, char *text, 
 }
 
 /* The attributes that record the settings; rarely used ones only if they are set. */
-static void describe(const struct recorded *recorded, char text[DESCRIPTION])
+static void describe(const struct field_shapes *recorded, char text[DESCRIPTION])
 {
     const struct support_options *options = &recorded->support;
     const struct support_options usual = support_defaults(options->mls.dim);
@@ -114,7 +114,7 @@ static bool find_attribute(const struct section *section, const char *key, char 
     return section_attribute(section, key, value, 64);
 }
 
-enum status stage_recorded(const struct stream *stream, const char *prefix, struct recorded *recorded,
+enum status stage_recorded(const struct stream *stream, const char *prefix, struct field_shapes *recorded,
                            struct error *error)
 {
     struct support_options *options = &recorded->support;
@@ -124,7 +124,7 @@ enum status stage_recorded(const struct stream *stream, const char *prefix, stru
     const struct section *radius;
     snprintf(name, sizeof name, "%s.radius", prefix);
     RETURN_IF_ERROR(stream_nodes(stream, &dim, NULL, NULL, error));
-    *recorded = (struct recorded){.support = support_defaults(dim)};
+    *recorded = (struct field_shapes){.support = support_defaults(dim)};
     recorded->shapes = options->mls;
     if (stream_find(stream, name) == NULL) {
         return STATUS_OK;
@@ -155,7 +155,7 @@ enum status stage_recorded(const struct stream *stream, const char *prefix, stru
     return STATUS_OK;
 }
 
-enum status stage_record(struct stream *stream, const struct recorded *recorded, int64_t node_count,
+enum status stage_record(struct stream *stream, const struct field_shapes *recorded, int64_t node_count,
                          const double *radius, struct error *error)
 {
     char described[DESCRIPTION];
@@ -167,7 +167,7 @@ enum status stage_record(struct stream *stream, const struct recorded *recorded,
 
 static const char parameters[] = "parameters";
 
-const struct section *solved_parameters(const struct stream *stream, const struct recorded *recorded,
+const struct section *solved_parameters(const struct stream *stream, const struct field_shapes *recorded,
                                         const struct section *field)
 {
     char name[96];

@@ -6,7 +6,7 @@
 #include "stages/views.h"
 
 #include "approx/adaptive/adaptive.h"
-#include "approx/support/support.h"
+#include "approx/field/field.h"
 
 /* How ipoints places integration points; by default for smoothed cells. */
 struct ipoints_options {
@@ -73,13 +73,6 @@ struct mls_texts {
 };
 MUST_CHECK enum status mls_apply(const struct mls_texts *texts, struct mls *mls, struct error *error);
 
-/* The radii of supports, and the settings recorded with them. */
-struct recorded {
-    const double *radius; /* of the nodes, m; NULL: the stream has none, and the settings are defaults */
-    struct support_options support; /* of the lists; its radius and factor are the defaults */
-    struct mls shapes;              /* of the shape functions, if different from support.mls */
-};
-
 /* A view of PREFIX.side, the sides of interfaces at which supports stop; NULL: the stream has none. */
 MUST_CHECK enum status stage_sides(const struct stream *stream, const char *prefix, const int32_t **side,
                                    struct error *error);
@@ -88,17 +81,17 @@ MUST_CHECK enum status stage_sides(const struct stream *stream, const char *pref
  * recorded->support.side. Settings that are not recorded are those of support_defaults(). PREFIX is support;
  * or parameters, for the field that mtled computed. */
 MUST_CHECK enum status stage_recorded(const struct stream *stream, const char *prefix,
-                                      struct recorded *recorded, struct error *error);
+                                      struct field_shapes *recorded, struct error *error);
 
 /* Put radius[node_count] as support.radius, with the settings. */
-MUST_CHECK enum status stage_record(struct stream *stream, const struct recorded *recorded,
+MUST_CHECK enum status stage_record(struct stream *stream, const struct field_shapes *recorded,
                                     int64_t node_count, const double *radius, struct error *error);
 
 /* The field that mtled computed is u_h(x) = sum_j phi_j(x) d_j. Its results hold the parameters d_j in the
  * sections parameters and parameters.frame.K, and the supports of phi_j in parameters.radius, as `recorded`.
  * The section to evaluate for a field: for u and u.frame.K their parameters, if they exist and fit; else the
  * field itself, whose values are taken as parameters. */
-const struct section *solved_parameters(const struct stream *stream, const struct recorded *recorded,
+const struct section *solved_parameters(const struct stream *stream, const struct field_shapes *recorded,
                                         const struct section *field);
 
 /* Whether a section contains parameters, so that it is not a field itself. */

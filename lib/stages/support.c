@@ -36,7 +36,7 @@ static enum status put_radii(struct stream *stream, const struct support_options
 {
     NEW_SCRATCH(double, radius, node_count, error);
     RETURN_IF_ERROR(stage_radii(stream, options, node_count, x, radius, error));
-    return stage_record(stream, &(struct recorded){NULL, *options, options->mls}, node_count, radius, error);
+    return stage_record(stream, &(struct field_shapes){NULL, *options, options->mls}, node_count, radius, error);
 }
 
 /* Points of one section in these cells, their lists PREFIX.ptr, .idx, .widen, and their name in the
@@ -225,7 +225,7 @@ enum status stage_sides(const struct stream *stream, const char *prefix, const i
 
 enum status stage_renew(struct stream *stream, const int32_t *side, struct error *error)
 {
-    struct recorded recorded;
+    struct field_shapes recorded;
     struct support_report report;
     struct cells cells;
     RETURN_IF_ERROR(stream_cells(stream, true, &cells, error));

@@ -101,7 +101,7 @@ static void check_polynomial(int dim, bool linear, field_function field, double 
     FREED_BY(motion_free) struct motion motion = {0};
     double inverse_error;
     make_body(dim, dim == 2 ? 9 : 6, field, &body);
-    GOOD(motion_build(&body.cells, body.u, linear, NULL, &motion, &error));
+    GOOD(motion_build(&(struct nodal_field){.cells = body.cells, .values = body.u}, linear, &motion, &error));
     assert_true(largest_error(&motion, field, &inverse_error) <= tolerance);
     assert_true(inverse_error <= 1e-10);
     drop_body(&body);
@@ -123,7 +123,8 @@ TEST(orders)
             struct body body;
             FREED_BY(motion_free) struct motion motion = {0};
             make_body(2, fine ? 41 : 21, smooth_field, &body);
-            GOOD(motion_build(&body.cells, body.u, linear, NULL, &motion, &error));
+            GOOD(motion_build(&(struct nodal_field){.cells = body.cells, .values = body.u}, linear, &motion,
+                              &error));
             errors[fine] = largest_error(&motion, smooth_field, &ignored);
             drop_body(&body);
         }
@@ -139,7 +140,7 @@ TEST(walks)
     struct body body;
     FREED_BY(motion_free) struct motion motion = {0};
     make_body(3, 6, smooth_field, &body);
-    GOOD(motion_build(&body.cells, body.u, false, NULL, &motion, &error));
+    GOOD(motion_build(&(struct nodal_field){.cells = body.cells, .values = body.u}, false, &motion, &error));
     for (int64_t c = 0; c < body.cells.count; c++) {
         for (int a = 0; a <= 3; a++) {
             int64_t start = motion.across[4 * c + a];

@@ -33,9 +33,7 @@ static enum status view_side(struct side *side, const char *field, struct error 
     view->values = side->section->data;
     if (parameters != side->section) {
         view->parameters = parameters->data;
-        view->radius = side->solved.radius;
-        view->support = &side->solved.support;
-        view->shapes = &side->solved.shapes;
+        view->shapes = &side->solved;
     }
     return STATUS_OK;
 }

@@ -12,7 +12,7 @@ struct side {
     struct stream stream;
     const struct section *section; /* of the field */
     struct nodal_field field;
-    struct recorded solved; /* parameters of that field, if there are any */
+    struct field_shapes solved; /* parameters of that field, if there are any */
 };
 
 /* The difference of two fields. */

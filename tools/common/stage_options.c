@@ -38,7 +38,7 @@ void support_note_steep(const struct tool *tool, const struct support_options *o
 static void fill_one(const struct tool *tool, struct stream *stream, const char *stage, char *ran,
                      size_t size)
 {
-    struct recorded recorded;
+    struct field_shapes recorded;
     TOOL_TRY(tool, stage_recorded(stream, "support", &recorded, &error));
     if (strcmp(stage, "ipoints") == 0) {
         const struct ipoints_options options = {.smoothed = true};

@@ -175,7 +175,7 @@ enum status model_interfaces(struct model *model, struct stream *stream, bool *r
     const struct assembly *input = &model->assembly;
     FREED_BY(faces_free) struct faces built = {0};
     FREED_BY(groups_free) struct groups regions = {0};
-    struct recorded recorded;
+    struct field_shapes recorded;
     bool divided = false;
     NEW_SCRATCH(struct moduli, of, input->cells.count, error);
     NEW_SCRATCH(int32_t, divided_side, input->cells.count, error);

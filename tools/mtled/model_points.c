@@ -124,7 +124,7 @@ static enum status find_field(struct point_section *p, struct error *error)
 {
     const struct cells *cells = &p->model->assembly.cells;
     const struct measured *measured = &p->condition->measured;
-    struct recorded recorded;
+    struct field_shapes recorded;
     SCRATCH double *reach = NULL;
     double given = p->section->reach;
     FREED_BY(field_table_free) struct field_table field = {0};
@@ -148,9 +148,8 @@ static enum status find_field(struct point_section *p, struct error *error)
     if (recorded.radius == NULL) {
         return fail(error, STATUS_INPUT, "no section support.radius: run support");
     }
-    RETURN_IF_ERROR(field_table_build(&recorded.support, &recorded.shapes, cells, recorded.radius,
-                                      measured->count, measured->x, p->section->condition.table, &field,
-                                      error));
+    RETURN_IF_ERROR(field_table_build(&recorded, cells, measured->count, measured->x,
+                                      p->section->condition.table, &field, error));
     return keep_field(p, &field, error);
 }
 

@@ -4,7 +4,6 @@
 
 #include "approx/cells/cells.h"
 #include "approx/field/field.h"
-#include "approx/field/field_turning.h"
 #include "solid/contact/contact.h"
 
 #include <math.h>
@@ -96,7 +95,7 @@ static enum status find_upright_cells(struct run *run, int64_t count, const doub
 {
     struct run_folds *folds = &run->folds;
     const struct cells *cells = &run->model->assembly.cells;
-    struct recorded recorded;
+    struct field_shapes recorded;
     RETURN_IF_ERROR(stage_recorded(run->stream, "support", &recorded, error));
     if (recorded.radius == NULL) {
         return STATUS_OK;
@@ -106,8 +105,8 @@ static enum status find_upright_cells(struct run *run, int64_t count, const doub
         folds->has_space = true;
     }
     NEW_SCRATCH(double, least, count, error);
-    enum status status = field_least_determinants(&recorded.support, &recorded.shapes, &folds->space, count,
-                                                  folds->flat, u, least, error);
+    enum status status =
+        field_least_determinants(&recorded, &folds->space, count, folds->flat, u, least, error);
     for (int64_t i = 0; i < count && status == STATUS_OK; i++) {
         folds->folds.oriented[folds->flat[i]] = least[i] > 0.0;
     }

@@ -1,10 +1,240 @@
 #include "approx/adaptive/adaptive.h"
 
-#include "approx/adaptive/adaptive_measure.h"
+#include "approx/cells/quadrature.h"
+#include "approx/shape/shape.h"
+#include "approx/support/support.h"
+#include "base/lists.h"
 #include "base/memory.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
+
+/* A subcell. */
+struct leaf {
+    int32_t cell;
+    int32_t level;
+    bool measured, split;
+    double change;     /* |K by the rule - K by the rule on its children|, Frobenius */
+    double vertex[12]; /* (dim + 1) * dim */
+};
+
+/* In order of the cells, within a cell in order of the subdivision. */
+struct leaves {
+    int64_t count;
+    struct leaf *leaf;
+};
+
+static void leaves_free(struct leaves *leaves)
+{
+    free(leaves->leaf);
+}
+
+/* The input of the refinement. */
+struct refinement {
+    const struct adaptive_options *options;
+    const struct cells *cells;
+    struct support_space space;
+    struct quadrature_rule rule;
+    double *norm; /* |K| of each cell, by the rule on the whole cell */
+};
+
+static void refinement_free(struct refinement *refinement)
+{
+    support_space_free(&refinement->space);
+    free(refinement->norm);
+}
+
+/* Number of subcells that are measured at once. It bounds the memory and does not affect the result. */
+#define BATCH_LEAVES 256
+
+/* A child by pairs of vertices of its parent: its vertices are their midpoints, or the vertex where both are
+ * the same. The octahedron within a tetrahedron is cut along the edge 02-13 (Bey 1995), which keeps the
+ * children of children well shaped. */
+static const uint8_t triangle_children[4][3][2] = {
+    {{0, 0}, {0, 1}, {0, 2}}, {{0, 1}, {1, 1}, {1, 2}}, {{0, 2}, {1, 2}, {2, 2}}, {{0, 1}, {1, 2}, {0, 2}}};
+static const uint8_t tetrahedron_children[8][4][2] = {
+    {{0, 0}, {0, 1}, {0, 2}, {0, 3}}, {{0, 1}, {1, 1}, {1, 2}, {1, 3}}, {{0, 2}, {1, 2}, {2, 2}, {2, 3}},
+    {{0, 3}, {1, 3}, {2, 3}, {3, 3}}, {{0, 1}, {0, 2}, {0, 3}, {1, 3}}, {{0, 1}, {0, 2}, {1, 2}, {1, 3}},
+    {{0, 2}, {0, 3}, {1, 3}, {2, 3}}, {{0, 2}, {1, 2}, {1, 3}, {2, 3}}};
+
+/* The vertices of a subcell, as nodes of itself. */
+static const int32_t in_order[] = {0, 1, 2, 3};
+
+/* Children of a subcell: 4 triangles or 8 tetrahedra of equal volume. */
+static int children_of(int dim)
+{
+    return dim == 2 ? 4 : 8;
+}
+
+/* of_child[(dim + 1) * dim]: the vertices of one child. */
+static void place_child(int dim, const double *vertex, int child, double *of_child)
+{
+    for (int k = 0; k <= dim; k++) {
+        const uint8_t *pair = dim == 2 ? triangle_children[child][k] : tetrahedron_children[child][k];
+        for (int a = 0; a < dim; a++) {
+            of_child[k * dim + a] = 0.5 * (vertex[pair[0] * dim + a] + vertex[pair[1] * dim + a]);
+        }
+    }
+}
+
+/* Points of a subcell's own rule and of its children's, with their signs in the difference. */
+struct sample {
+    int64_t per_leaf;
+    int32_t cell[BATCH_LEAVES];
+    double *x;
+    struct support_lists lists;
+    double *phi, *dphi;
+};
+
+static void sample_free(struct sample *sample)
+{
+    free(sample->x);
+    support_free(&sample->lists);
+    FREE_ALL(sample->phi, sample->dphi);
+}
+
+static enum status sample_leaves(const struct refinement *refinement, struct leaf *const *leaf, int64_t count,
+                                 struct sample *sample, struct error *error)
+{
+    const struct cells *cells = refinement->cells;
+    const struct mls *mls = &refinement->options->support.mls;
+    int dim = cells->dim, per_rule = refinement->rule.points;
+    sample->per_leaf = per_rule * (1 + children_of(dim));
+    int64_t points = count * sample->per_leaf;
+    RETURN_IF_ERROR(NEW_ARRAY(&sample->x, points * dim, error));
+    double *x = sample->x;
+    for (int64_t l = 0; l < count; l++) {
+        sample->cell[l] = leaf[l]->cell;
+        quadrature_positions(&refinement->rule, dim, leaf[l]->vertex, in_order, x);
+        x += per_rule * dim;
+        for (int child = 0; child < children_of(dim); child++) {
+            double vertex[12];
+            place_child(dim, leaf[l]->vertex, child, vertex);
+            quadrature_positions(&refinement->rule, dim, vertex, in_order, x);
+            x += per_rule * dim;
+        }
+    }
+    struct visibility_places places = {.cell = sample->cell, .points_per_row = sample->per_leaf};
+    RETURN_IF_ERROR(support_build(&refinement->options->support, &refinement->space, &places, points,
+                                  sample->x, "adaptive points", &sample->lists, error));
+    int64_t pairs = sample->lists.ptr[points];
+    RETURN_IF_ERROR(NEW_ARRAY(&sample->phi, pairs, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&sample->dphi, pairs * dim, error));
+    struct neighbours lists = support_view(&sample->lists);
+    return shape_table(mls, cells->x, refinement->space.radius, &lists, sample->x, "adaptive points",
+                       sample->phi, sample->dphi, error);
+}
+
+/* matrix (n x n, lower half) += factor G G^T. Row i of G belongs to row place[i] of the matrix. */
+static void add_products(int dim, const double *gradient, const int32_t *place, int64_t count, int64_t n,
+                         double factor, double *matrix)
+{
+    for (int64_t i = 0; i < count; i++) {
+        double *row = matrix + place[i] * n;
+        double own[3] = {0.0, 0.0, 0.0};
+        for (int a = 0; a < dim; a++) {
+            own[a] = factor * gradient[i * dim + a];
+        }
+        for (int64_t k = 0; k <= i; k++) {
+            double sum = vector_dot(dim, own, gradient + k * dim);
+            row[place[k]] += sum;
+        }
+    }
+}
+
+/* Frobenius norm of a symmetric matrix from its lower half. */
+static double norm_of(const double *matrix, int64_t n)
+{
+    double off = 0.0, diagonal = 0.0;
+    for (int64_t i = 0; i < n; i++) {
+        for (int64_t k = 0; k < i; k++) {
+            off += matrix[i * n + k] * matrix[i * n + k];
+        }
+        diagonal += matrix[i * n + i] * matrix[i * n + i];
+    }
+    return sqrt(2.0 * off + diagonal);
+}
+
+/* united[] = the union of the lists of the points [first, last), ascending; it has room for all of their
+ * entries. */
+static int64_t unite(const struct support_lists *lists, int64_t first, int64_t last, int64_t *united)
+{
+    int64_t count = 0;
+    for (int64_t i = lists->ptr[first]; i < lists->ptr[last]; i++) {
+        united[count++] = lists->idx[i];
+    }
+    return sort_distinct(count, united);
+}
+
+/* *norm = |K| by the rule on a subcell, *change = |K - K by the rule on its children|. */
+static enum status measure(const struct refinement *refinement, const struct sample *sample, int64_t leaf,
+                           double volume, double *norm, double *change, struct error *error)
+{
+    const struct support_lists *lists = &sample->lists;
+    int dim = refinement->cells->dim, per_rule = refinement->rule.points;
+    int64_t first = leaf * sample->per_leaf, last = first + sample->per_leaf;
+    int64_t pairs = lists->ptr[last] - lists->ptr[first];
+    NEW_SCRATCH(int64_t, united, pairs, error);
+    NEW_SCRATCH(int32_t, place, pairs, error);
+    int64_t n = unite(lists, first, last, united);
+    NEW_SCRATCH(double, matrix, n * n, error);
+    for (int64_t p = first; p < last; p++) {
+        int64_t at = lists->ptr[p], count = lists->ptr[p + 1] - at;
+        double weight = volume * refinement->rule.weight[(p - first) % per_rule];
+        bool own = p - first < per_rule;
+        if (p - first == per_rule) {
+            *norm = norm_of(matrix, n);
+        }
+        for (int64_t i = 0; i < count; i++) {
+            place[i] = (int32_t)first_from(united, 0, n, lists->idx[at + i]);
+        }
+        add_products(dim, sample->dphi + at * dim, place, count, n, own ? weight : -weight / children_of(dim),
+                     matrix);
+    }
+    *change = norm_of(matrix, n);
+    return STATUS_OK;
+}
+
+/* Measure one batch of subcells. */
+static enum status measure_batch(struct refinement *refinement, struct leaf *const *leaf, int64_t count,
+                                 struct error *error)
+{
+    struct first_failure failure = {STATUS_OK};
+    FREED_BY(sample_free) struct sample sample = {0};
+    RETURN_IF_ERROR(sample_leaves(refinement, leaf, count, &sample, error));
+#pragma omp parallel for schedule(dynamic, 4)
+    for (int64_t l = 0; l < count; l++) {
+        struct error own;
+        double norm = 0.0;
+        double volume =
+            ldexp(cell_volume(refinement->cells, leaf[l]->cell), -refinement->cells->dim * leaf[l]->level);
+        note_failure(&failure, l, measure(refinement, &sample, l, volume, &norm, &leaf[l]->change, &own),
+                     &own, error);
+        if (leaf[l]->level == 0) {
+            refinement->norm[leaf[l]->cell] = norm;
+        }
+        leaf[l]->measured = true;
+    }
+    return failure.status;
+}
+
+/* Measure the subcells that have not been measured; those of level 0 also set the norm of their cell. */
+static enum status measure_new(struct refinement *refinement, struct leaves *leaves, struct error *error)
+{
+    struct leaf *batch[BATCH_LEAVES];
+    int64_t count = 0;
+    for (int64_t l = 0; l < leaves->count; l++) {
+        if (!leaves->leaf[l].measured) {
+            batch[count++] = &leaves->leaf[l];
+        }
+        if (count == BATCH_LEAVES || (count > 0 && l == leaves->count - 1)) {
+            RETURN_IF_ERROR(measure_batch(refinement, batch, count, error));
+            count = 0;
+        }
+    }
+    return STATUS_OK;
+}
 
 /* Share of the tolerance for the changes of the subcells that are kept; the rest is for those that are
  * split. */
@@ -34,16 +264,14 @@ static enum status mark_cell(const struct adaptive_options *options, struct leaf
                              double norm, int64_t *marked, bool *unresolved, struct error *error)
 {
     double sum = 0.0;
-    struct leaf **order = NULL;
-    enum status status = NEW_ARRAY(&order, count, error);
+    NEW_SCRATCH(struct leaf *, order, count, error);
     *unresolved = false;
-    for (int64_t l = 0; status == STATUS_OK && l < count; l++) {
+    for (int64_t l = 0; l < count; l++) {
         order[l] = &leaf[l];
         sum += leaf[l].change;
     }
-    if (status != STATUS_OK || sum <= options->tolerance * norm) {
-        free(order);
-        return status;
+    if (sum <= options->tolerance * norm) {
+        return STATUS_OK;
     }
     qsort(order, (size_t)count, sizeof *order, by_change);
     sum = 0.0;
@@ -56,8 +284,7 @@ static enum status mark_cell(const struct adaptive_options *options, struct leaf
             *unresolved = *unresolved && !order[l]->split;
         }
     }
-    free(order);
-    return status;
+    return STATUS_OK;
 }
 
 /* Replace the marked subcells by their children. */
@@ -66,12 +293,10 @@ static enum status split(int dim, int64_t marked, struct leaves *leaves, struct 
     if (marked == 0) {
         return STATUS_OK;
     }
-    int children = adaptive_children(dim);
+    int children = children_of(dim);
     int64_t count = leaves->count + marked * (children - 1);
-    struct leaf *next = array_new(count, sizeof *next);
-    if (next == NULL) {
-        return fail_memory(error, "subcells");
-    }
+    struct leaf *next;
+    RETURN_IF_ERROR(NEW_ARRAY(&next, count, error));
     struct leaf *at = next;
     for (int64_t l = 0; l < leaves->count; l++) {
         const struct leaf *leaf = &leaves->leaf[l];
@@ -81,7 +306,7 @@ static enum status split(int dim, int64_t marked, struct leaves *leaves, struct 
         }
         for (int child = 0; child < children; child++, at++) {
             *at = (struct leaf){.cell = leaf->cell, .level = leaf->level + 1};
-            adaptive_child(dim, leaf->vertex, child, at->vertex);
+            place_child(dim, leaf->vertex, child, at->vertex);
         }
     }
     free(leaves->leaf);
@@ -94,16 +319,16 @@ static enum status split(int dim, int64_t marked, struct leaves *leaves, struct 
 static enum status start(const struct cells *cells, struct leaves *leaves, struct error *error)
 {
     int dim = cells->dim, vertices = dim + 1;
-    enum status status = NEW_ARRAY(&leaves->leaf, cells->count, error);
+    RETURN_IF_ERROR(NEW_ARRAY(&leaves->leaf, cells->count, error));
     leaves->count = cells->count;
-    for (int64_t c = 0; status == STATUS_OK && c < cells->count; c++) {
+    for (int64_t c = 0; c < cells->count; c++) {
         struct leaf *leaf = &leaves->leaf[c];
         leaf->cell = (int32_t)c;
         for (int i = 0; i < vertices * dim; i++) {
             leaf->vertex[i] = cells->x[(int64_t)cells->node[c * vertices + i / dim] * dim + i % dim];
         }
     }
-    return status;
+    return STATUS_OK;
 }
 
 /* Mark the subcells to be split in all cells. */
@@ -140,16 +365,14 @@ static enum status place_points(const struct refinement *refinement, const struc
     RETURN_IF_ERROR(NEW_ARRAY(&points->x, points->count * dim, error));
     RETURN_IF_ERROR(NEW_ARRAY(&points->weight, points->count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&points->cell, points->count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&points->level, points->count, error));
     for (int64_t l = 0; l < leaves->count; l++) {
         const struct leaf *leaf = &leaves->leaf[l];
         int64_t first = l * rule->points;
         double volume = ldexp(cell_volume(refinement->cells, leaf->cell), -dim * leaf->level);
-        adaptive_positions(rule, dim, leaf->vertex, points->x + first * dim);
+        quadrature_positions(rule, dim, leaf->vertex, in_order, points->x + first * dim);
         for (int q = 0; q < rule->points; q++) {
             points->weight[first + q] = rule->weight[q] * volume;
             points->cell[first + q] = leaf->cell;
-            points->level[first + q] = leaf->level;
         }
     }
     return STATUS_OK;
@@ -158,29 +381,24 @@ static enum status place_points(const struct refinement *refinement, const struc
 enum status adaptive_points_build(const struct adaptive_options *options, const struct cells *cells,
                                   const double *radius, struct adaptive_points *points, struct error *error)
 {
-    enum status status;
-    struct refinement refinement = {.options = options, .cells = cells, .radius = radius};
-    struct leaves leaves = {0};
+    FREED_BY(refinement_free) struct refinement refinement = {.options = options, .cells = cells};
+    FREED_BY(leaves_free) struct leaves leaves = {0};
     int64_t marked;
     *points = (struct adaptive_points){0};
-    TRY(quadrature_cell_rule(cells->dim, options->rule_points, &refinement.rule, error));
-    TRY(support_space_build(&options->support, cells, radius, &refinement.space, error));
-    TRY(NEW_ARRAY(&refinement.norm, cells->count, error));
-    TRY(start(cells, &leaves, error));
+    RETURN_IF_ERROR(quadrature_cell_rule(cells->dim, options->rule_points, &refinement.rule, error));
+    RETURN_IF_ERROR(support_space_build(&options->support, cells, radius, &refinement.space, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&refinement.norm, cells->count, error));
+    RETURN_IF_ERROR(start(cells, &leaves, error));
     do {
-        TRY(adaptive_measure(&refinement, &leaves, error));
-        TRY(mark(&refinement, &leaves, &marked, &points->unresolved, error));
-        TRY(split(cells->dim, marked, &leaves, error));
+        RETURN_IF_ERROR(measure_new(&refinement, &leaves, error));
+        RETURN_IF_ERROR(mark(&refinement, &leaves, &marked, &points->unresolved, error));
+        RETURN_IF_ERROR(split(cells->dim, marked, &leaves, error));
     } while (marked > 0);
-    TRY(place_points(&refinement, &leaves, points, error));
-done:
-    support_space_free(&refinement.space);
-    FREE_ALL(refinement.norm, leaves.leaf);
-    return status;
+    return place_points(&refinement, &leaves, points, error);
 }
 
 void adaptive_points_free(struct adaptive_points *points)
 {
-    FREE_ALL(points->x, points->weight, points->cell, points->level);
+    FREE_ALL(points->x, points->weight, points->cell);
     *points = (struct adaptive_points){0};
 }

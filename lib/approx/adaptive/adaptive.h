@@ -24,7 +24,6 @@ struct adaptive_points {
     double *x;          /* count * dim */
     double *weight;     /* count, all positive: share of the cell's volume */
     int32_t *cell;      /* count: the background cell */
-    int32_t *level;     /* count: subdivisions between the cell and the point's subcell */
     int64_t unresolved; /* cells that change by more than the tolerance even at the last level */
 };
 

@@ -1,6 +1,7 @@
 #include "approx/field/field.h"
 
 #include "approx/points/select.h"
+#include "approx/shape/shape.h"
 #include "approx/support/support.h"
 #include "base/chunks.h"
 #include "base/memory.h"
@@ -69,24 +70,35 @@ enum status field_outside(const struct cells *cells, const double *spacing, doub
     return STATUS_OK;
 }
 
-enum status field_table_build(const struct support_options *options, const struct mls *shapes,
-                              const struct cells *cells, const double *radius, int64_t count, const double *x,
-                              const char *what, struct field_table *table, struct error *error)
+enum status field_table_at(const struct field_shapes *shapes, const struct support_space *space,
+                           const struct visibility_places *places, int64_t count, const double *x,
+                           const char *what, bool gradients, struct field_table *table, struct error *error)
+{
+    *table = (struct field_table){0};
+    RETURN_IF_ERROR(support_build(&shapes->support, space, places, count, x, what, &table->lists, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&table->phi, table->lists.ptr[count], error));
+    if (gradients) {
+        RETURN_IF_ERROR(NEW_ARRAY(&table->dphi, table->lists.ptr[count] * space->cells.dim, error));
+    }
+    struct neighbours lists = support_view(&table->lists);
+    return shape_table(&shapes->shapes, space->cells.x, space->radius, &lists, x, what, table->phi,
+                       table->dphi, error);
+}
+
+enum status field_table_build(const struct field_shapes *shapes, const struct cells *cells, int64_t count,
+                              const double *x, const char *what, struct field_table *table,
+                              struct error *error)
 {
     FREED_BY(support_space_free) struct support_space space = {0};
     *table = (struct field_table){0};
-    RETURN_IF_ERROR(support_space_build(options, cells, radius, &space, error));
-    RETURN_IF_ERROR(support_build(options, &space, NULL, count, x, what, &table->lists, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&table->phi, table->lists.ptr[count], error));
-    struct neighbours lists = support_view(&table->lists);
-    return shape_table(shapes != NULL ? shapes : &options->mls, cells->x, radius, &lists, x, what, table->phi,
-                       NULL, error);
+    RETURN_IF_ERROR(support_space_build(&shapes->support, cells, shapes->radius, &space, error));
+    return field_table_at(shapes, &space, NULL, count, x, what, false, table, error);
 }
 
 void field_table_free(struct field_table *table)
 {
     support_free(&table->lists);
-    free(table->phi);
+    FREE_ALL(table->phi, table->dphi);
     *table = (struct field_table){0};
 }
 
@@ -159,4 +171,61 @@ enum status field_carry(const struct cells *from, int64_t cols, const double *va
         vector_between(dim, to->x + node * dim, middle, into_cell, within + node * dim);
     }
     return interpolate(from, cols, values, to->node_count, within, to->x, result, error);
+}
+
+/* x[FIELD_TURNING_POINTS * dim]: the points within a cell whose barycentric coordinates are sixth[] / 6. */
+static void place_points(const struct cells *cells, int64_t cell, double *x)
+{
+    int dim = cells->dim;
+    const double *corner[4];
+    cell_corners(cells, cell, corner);
+    for (int n = 0; n < (dim == 2 ? 16 : 64); n++) {
+        int sixth[4] = {0, n % 4 + 1, n / 4 % 4 + 1, dim == 2 ? 0 : n / 16 + 1};
+        sixth[0] = 6 - sixth[1] - sixth[2] - sixth[3];
+        for (int i = 0; i < dim && sixth[0] > 0; i++) {
+            *x = 0.0;
+            for (int k = 0; k <= dim; k++) {
+                *x += sixth[k] / 6.0 * corner[k][i];
+            }
+            x++;
+        }
+    }
+}
+
+/* det (I + grad u) at point p of a table of gradients. */
+static double determinant_at(int dim, const struct field_table *table, int64_t p, const double *u)
+{
+    double F[3][3] = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};
+    for (int64_t j = table->lists.ptr[p]; j < table->lists.ptr[p + 1]; j++) {
+        for (int i = 0; i < dim; i++) {
+            for (int k = 0; k < dim; k++) {
+                F[i][k] += u[(int64_t)table->lists.idx[j] * dim + i] * table->dphi[j * dim + k];
+            }
+        }
+    }
+    return dim == 2 ? determinant2(F[0], F[1]) : determinant3(F[0], F[1], F[2]);
+}
+
+enum status field_least_determinants(const struct field_shapes *shapes, const struct support_space *space,
+                                     int64_t count, const int32_t *cell, const double *u, double *least,
+                                     struct error *error)
+{
+    const struct cells *cells = &space->cells;
+    int64_t points = count * FIELD_TURNING_POINTS;
+    struct visibility_places places = {.cell = cell, .points_per_row = FIELD_TURNING_POINTS};
+    FREED_BY(field_table_free) struct field_table table = {0};
+    NEW_SCRATCH(double, x, points * cells->dim, error);
+    for (int64_t i = 0; i < count; i++) {
+        place_points(cells, cell[i], x + i * FIELD_TURNING_POINTS * cells->dim);
+    }
+    RETURN_IF_ERROR(
+        field_table_at(shapes, space, &places, points, x, "points within cells", true, &table, error));
+    for (int64_t p = 0; p < points; p++) {
+        double determinant = determinant_at(cells->dim, &table, p, u);
+        double *lowest = &least[p / FIELD_TURNING_POINTS];
+        if (p % FIELD_TURNING_POINTS == 0 || determinant < *lowest || isnan(determinant)) {
+            *lowest = determinant;
+        }
+    }
+    return STATUS_OK;
 }

@@ -7,6 +7,23 @@
 
 #include <stdbool.h>
 
+/* The shape functions of a field u_h = sum_j phi_j d_j. */
+struct field_shapes {
+    const double *radius; /* of the supports of the nodes, m; NULL: not known, and the others are defaults */
+    struct support_options support; /* of the lists; its radius and factor are the defaults */
+    struct mls shapes;              /* if different from support.mls */
+};
+
+/* A view of a field: its nodes, with their cells if there are any, and values[cells.node_count * cols]. */
+struct nodal_field {
+    struct cells cells;
+    int64_t cols;
+    const double *values;
+    /* Of a computed field; NULL: the values are taken as parameters of MMLS with the default supports. */
+    const double *parameters; /* d_j: cells.node_count * cols */
+    const struct field_shapes *shapes;
+};
+
 /* spacing[node_count], m: the mean length of the cell edges at each node; at nodes without cell, and without
  * cells, the mean distance to the nearest nodes. */
 MUST_CHECK enum status field_spacing(const struct cells *cells, double *spacing, struct error *error);
@@ -30,22 +47,44 @@ MUST_CHECK enum status field_outside(const struct cells *cells, const double *sp
 MUST_CHECK enum status field_carry(const struct cells *from, int64_t cols, const double *values,
                                    const struct cells *to, double *result, struct error *error);
 
-/* Lists and values of shape functions at points. */
+/* Lists, values and gradients of shape functions at points. */
 struct field_table {
     struct support_lists lists;
-    double *phi; /* lists.ptr[lists.count] */
+    double *phi;  /* lists.ptr[lists.count] */
+    double *dphi; /* lists.ptr[lists.count] * dim, 1/m; NULL: not wanted */
 };
 
-/* Supports and shape functions at x[count * dim] on a cloud with radius[node_count], m. Where there are
+/* Supports and shape functions at x[count * dim], in the cells of `places` (NULL: not known). Where there are
  * cells, neighbours are those visible through them (visibility.h). Nodal values are taken as the parameters
  * of the approximation, u_h = sum_j phi_j u_j; linear fields (quadratic ones with mls2) are reproduced.
- * `what` names the points in messages. The shape functions are *shapes, or options->mls if that is NULL. */
-MUST_CHECK enum status field_table_build(const struct support_options *options, const struct mls *shapes,
-                                         const struct cells *cells, const double *radius, int64_t count,
-                                         const double *x, const char *what, struct field_table *table,
-                                         struct error *error);
+ * `what` names the points in messages. */
+MUST_CHECK enum status field_table_at(const struct field_shapes *shapes, const struct support_space *space,
+                                      const struct visibility_places *places, int64_t count, const double *x,
+                                      const char *what, bool gradients, struct field_table *table,
+                                      struct error *error);
+
+/* The same, without gradients, for a space of these cells. */
+MUST_CHECK enum status field_table_build(const struct field_shapes *shapes, const struct cells *cells,
+                                         int64_t count, const double *x, const char *what,
+                                         struct field_table *table, struct error *error);
 void field_table_free(struct field_table *table);
 
 /* values[count * cols] = sum over the row's neighbours of phi_j field[j * cols ...]. */
 void field_evaluate(int64_t count, const int64_t *ptr, const int32_t *idx, const double *phi, int64_t cols,
                     const double *field, double *values);
+
+/* Cells in which a displacement field inverts the body.
+ *
+ * The map x + u(x) preserves orientation where det (I + grad u) > 0. For cells that are not flat, the linear
+ * interpolant between the vertices decides. Across a flat cell of height t and edges of length h, the error
+ * of its gradient is of the order of h^2 / t times the second derivative of u: it may be inverted where the
+ * field only bends. These cells are therefore judged by the gradient of the field itself, at the points within
+ * whose barycentric coordinates are positive multiples of 1/6: ten in a triangle, ten in a tetrahedron. */
+enum { FIELD_TURNING_POINTS = 10 };
+
+/* least[count]: the least determinant at the points within each cell of cell[count]; NaN if u is not finite.
+ * u[node_count * dim]: parameters of the field, m. Errors: as support_build and shape_table. */
+MUST_CHECK enum status field_least_determinants(const struct field_shapes *shapes,
+                                                const struct support_space *space, int64_t count,
+                                                const int32_t *cell, const double *u, double *least,
+                                                struct error *error);

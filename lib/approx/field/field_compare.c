@@ -174,8 +174,7 @@ static enum status drop_outside(const struct nodal_field *a, const struct nodal_
 static enum status interpolate(const struct nodal_field *a, const struct nodal_field *b, bool skip,
                                struct field_comparison *comparison, double *reference, struct error *error)
 {
-    const struct support_options usual = support_defaults(a->cells.dim);
-    const struct support_options *support = b->parameters != NULL ? b->support : &usual;
+    struct field_shapes fit = {.support = support_defaults(a->cells.dim)};
     FREED_BY(field_table_free) struct field_table table = {0};
     NEW_SCRATCH(double, spacing, b->cells.node_count, error);
     NEW_SCRATCH(double, radius, b->cells.node_count, error);
@@ -183,10 +182,11 @@ static enum status interpolate(const struct nodal_field *a, const struct nodal_f
     NEW_SCRATCH(double, values, a->cells.node_count * a->cols, error);
     RETURN_IF_ERROR(field_spacing(&b->cells, spacing, error));
     RETURN_IF_ERROR(drop_outside(a, b, spacing, skip, comparison, points, error));
-    RETURN_IF_ERROR(support_radii(&usual, b->cells.node_count, spacing, radius, error));
-    RETURN_IF_ERROR(field_table_build(support, b->parameters != NULL ? b->shapes : NULL, &b->cells,
-                          b->parameters != NULL ? b->radius : radius, comparison->count, points,
-                          "nodes of A within B", &table, error));
+    RETURN_IF_ERROR(support_radii(&fit.support, b->cells.node_count, spacing, radius, error));
+    fit.radius = radius;
+    fit.shapes = fit.support.mls;
+    RETURN_IF_ERROR(field_table_build(b->shapes != NULL ? b->shapes : &fit, &b->cells, comparison->count,
+                                      points, "nodes of A within B", &table, error));
     field_evaluate(comparison->count, table.lists.ptr, table.lists.idx, table.phi, b->cols,
                    b->parameters != NULL ? b->parameters : b->values, values);
     for (int64_t i = 0; i < comparison->count; i++) {
@@ -223,7 +223,8 @@ enum status field_compare(const struct nodal_field *a, const struct nodal_field 
         }
     } else {
         enum status status = interpolate(a, b, skip_outside, comparison, reference, error);
-        RETURN_IF_ERROR(status == STATUS_VERDICT ? STATUS_INPUT : status); /* not comparable is not "differs" */
+        RETURN_IF_ERROR(status == STATUS_VERDICT ? STATUS_INPUT
+                                                 : status); /* not comparable is not "differs" */
     }
     differences(count, cols, a->values, reference, comparison->difference);
     return STATUS_OK;

@@ -23,19 +23,6 @@ void field_statistics_free(struct field_statistics *statistics);
 /* The value that `percent` of the differences do not exceed, linear between two. */
 double field_percentile(const struct field_statistics *statistics, double percent);
 
-/* A view of a field: its nodes, with their cells if there are any, and values[cells.node_count * cols]. */
-struct nodal_field {
-    struct cells cells;
-    int64_t cols;
-    const double *values;
-    /* Parameters, supports and shape functions of a computed field u_h = sum phi_j d_j; NULL: the values are
-     * taken as parameters of MMLS with the default supports. */
-    const double *parameters; /* d_j: cells.node_count * cols */
-    const double *radius;     /* supports of the nodes, m */
-    const struct support_options *support;
-    const struct mls *shapes;
-};
-
 /* The difference of two fields at the nodes of A. */
 struct field_comparison {
     bool coincide;      /* the clouds coincide; else B was interpolated */

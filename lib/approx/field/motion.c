@@ -26,53 +26,45 @@ static void edges(const struct cells *cells, const double *x, int64_t cell, doub
     }
 }
 
-/* Radii for a fit at the nodes. */
-static enum status choose_radii(const struct cells *cells, const struct support_options *options,
-                                double *radius, struct error *error)
+/* Gradients at the nodes, of the parameters or of a fit. */
+static enum status find_gradients(const struct nodal_field *field, double *gradient, struct error *error)
 {
-    NEW_SCRATCH(double, spacing, cells->node_count, error);
-    RETURN_IF_ERROR(field_spacing(cells, spacing, error));
-    return support_radii(options, cells->node_count, spacing, radius, error);
-}
-
-/* Gradients at the nodes, of the source or of a fit. */
-static enum status find_gradients(const struct cells *cells, const double *u,
-                                  const struct motion_source *source, double *gradient, struct error *error)
-{
+    const struct cells *cells = &field->cells;
     int dim = cells->dim;
     int64_t nodes = cells->node_count;
-    struct support_options options = source != NULL ? *source->support : support_defaults(dim);
-    struct mls shapes = source != NULL ? *source->shapes : options.mls;
+    struct field_shapes fit = {.support = support_defaults(dim)};
+    const struct field_shapes *shapes = field->shapes != NULL ? field->shapes : &fit;
+    const double *u = field->shapes != NULL ? field->parameters : field->values;
     struct visibility_places places = {.nodes = true};
-    FREED_BY(support_free) struct support_lists lists = {0};
     FREED_BY(support_space_free) struct support_space space = {0};
+    FREED_BY(field_table_free) struct field_table table = {0};
     NEW_SCRATCH(double, radius, nodes, error);
-    if (source != NULL) {
-        u = source->parameters;
-        memcpy(radius, source->radius, (size_t)nodes * sizeof *radius);
-    } else {
-        options.mls.basis = shapes.basis = BASIS_QUADRATIC;
-        RETURN_IF_ERROR(choose_radii(cells, &options, radius, error));
+    fit.support.mls.basis = BASIS_QUADRATIC;
+    fit.shapes = fit.support.mls;
+    fit.radius = radius;
+    if (shapes == &fit) {
+        NEW_SCRATCH(double, spacing, nodes, error);
+        RETURN_IF_ERROR(field_spacing(cells, spacing, error));
+        RETURN_IF_ERROR(support_radii(&fit.support, nodes, spacing, radius, error));
     }
-    RETURN_IF_ERROR(support_space_build(&options, cells, radius, &space, error));
-    RETURN_IF_ERROR(support_build(&options, &space, &places, nodes, cells->x, "nodes", &lists, error));
-    NEW_SCRATCH(double, phi, lists.ptr[nodes], error);
-    NEW_SCRATCH(double, dphi, lists.ptr[nodes] * dim, error);
-    struct neighbours view = support_view(&lists);
-    RETURN_IF_ERROR(shape_table(&shapes, cells->x, radius, &view, cells->x, "nodes", phi, dphi, error));
+    RETURN_IF_ERROR(support_space_build(&shapes->support, cells, shapes->radius, &space, error));
+    RETURN_IF_ERROR(field_table_at(shapes, &space, &places, nodes, cells->x, "nodes", true, &table, error));
     for (int64_t n = 0; n < nodes; n++) {
-        for (int64_t p = lists.ptr[n]; p < lists.ptr[n + 1]; p++) {
+        for (int64_t p = table.lists.ptr[n]; p < table.lists.ptr[n + 1]; p++) {
             for (int ij = 0; ij < dim * dim; ij++) {
-                gradient[n * dim * dim + ij] += u[lists.idx[p] * dim + ij / dim] * dphi[p * dim + ij % dim];
+                gradient[n * dim * dim + ij] +=
+                    u[table.lists.idx[p] * dim + ij / dim] * table.dphi[p * dim + ij % dim];
             }
         }
     }
     return STATUS_OK;
 }
 
-enum status motion_build(const struct cells *cells, const double *u, bool linear,
-                         const struct motion_source *source, struct motion *motion, struct error *error)
+enum status motion_build(const struct nodal_field *field, bool linear, struct motion *motion,
+                         struct error *error)
 {
+    const struct cells *cells = &field->cells;
+    const double *u = field->values;
     int dim = cells->dim;
     *motion = (struct motion){.cells = *cells, .u = u};
     RETURN_IF_ERROR(NEW_ARRAY(&motion->shape, cells->count * dim * dim, error));
@@ -92,7 +84,7 @@ enum status motion_build(const struct cells *cells, const double *u, bool linear
     }
     if (!linear) {
         RETURN_IF_ERROR(NEW_ARRAY(&motion->gradient, cells->node_count * dim * dim, error));
-        RETURN_IF_ERROR(find_gradients(cells, u, source, motion->gradient, error));
+        RETURN_IF_ERROR(find_gradients(field, motion->gradient, error));
     }
     return STATUS_OK;
 }

@@ -7,16 +7,7 @@
 #pragma once
 
 #include "approx/cells/cells.h"
-#include "approx/support/support.h"
-
-/* The field u(X) = sum_j phi_j(X) parameters_j, whose gradients are used instead of those of a fit. The
- * arrays are the caller's. */
-struct motion_source {
-    const struct support_options *support;
-    const struct mls *shapes; /* of phi */
-    const double *radius;     /* node_count: of the supports, m */
-    const double *parameters; /* node_count * dim, m */
-};
+#include "approx/field/field.h"
 
 struct motion {
     struct cells cells;
@@ -27,11 +18,11 @@ struct motion {
     double *moved;    /* node_count * dim: x + u */
 };
 
-/* The cells and u must outlive the motion. source: NULL for the gradients of a fit of u. linear: no
- * gradients, the displacement is piecewise linear. STATUS_VERDICT if the nodes do not admit a fit somewhere,
- * which `linear` does not need; STATUS_INPUT as cells_across. To be freed also on failure. */
-MUST_CHECK enum status motion_build(const struct cells *cells, const double *u, bool linear,
-                                    const struct motion_source *source, struct motion *motion,
+/* The field, a displacement, must outlive the motion. The gradients are those of its parameters; without
+ * these, of a fit. linear: no gradients, the displacement is piecewise linear. STATUS_VERDICT if the nodes do
+ * not admit a fit somewhere, which `linear` does not need; STATUS_INPUT as cells_across. To be freed also on
+ * failure. */
+MUST_CHECK enum status motion_build(const struct nodal_field *field, bool linear, struct motion *motion,
                                     struct error *error);
 void motion_free(struct motion *motion);
 

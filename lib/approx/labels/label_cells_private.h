@@ -36,9 +36,6 @@ void lattice_free(struct lattice *lattice);
 /* Locate the cuts of edges, and move points near a cut onto it. */
 MUST_CHECK enum status lattice_cut(struct lattice *lattice, struct error *error);
 
-/* The edge between two nodes, -1 when it is not cut. */
-int64_t lattice_edge(const struct lattice *lattice, int32_t p, int32_t q);
-
 /* Cut the lattice's cells into cells of one label each, including the outside. (*between)[cell_count], to be
  * freed: cells all of whose nodes lie on interfaces. */
 MUST_CHECK enum status lattice_cells(const struct lattice *lattice, struct label_cells *mesh, bool **between,
@@ -67,17 +64,6 @@ void octree_free(struct octree *octree);
  * finest cube's edge. Stops on the first failure. */
 typedef enum status octree_visitor(void *context, const int32_t corner[4][3]);
 MUST_CHECK enum status octree_cells(const struct octree *octree, octree_visitor *visit, void *context);
-
-/* The level of an octree whose cells have edges nearest to `size` by ratio; level 0 has cubes of edge
- * `spacing`. */
-int size_level(double spacing, double size);
-
-/* Raise wish[] of the finest cubes to the levels that the sizes need. There are count[3] cubes of this edge,
- * the first from low[3], m. Cubes outside of the cells with sizes keep their wish. *unsized: the share of the
- * cubes in the body outside of the cells with sizes; STATUS_INPUT if it is 1. */
-MUST_CHECK enum status sizes_wish(const struct labels *labels, const struct label_cells_options *options,
-                                  int levels, const int64_t count[3], const double low[3], double edge,
-                                  uint8_t *wish, double *unsized, struct error *error);
 
 /* The cells at each node, and the labels that meet there. */
 enum { LABEL_CELLS_MOST_LABELS = 8 };
@@ -193,6 +179,3 @@ MUST_CHECK enum status label_cells_improve(const struct labels *labels,
                                            const struct label_cells_kept *kept, struct label_cells *mesh,
                                            struct error *error);
 
-/* Correct the volumes of labels by small moves of interfaces: they become those of their voxels minus what is
- * dropped. Nodes with apart[] do not move. */
-MUST_CHECK enum status label_cells_volumes(const struct shaping *shaping, struct error *error);

@@ -64,10 +64,6 @@ struct vtu_bytes {
     char *bytes;
     int64_t size;
 };
-void vtu_read_bytes(struct msh_reader *r, const struct vtu_source *source, struct vtu_bytes *data);
-
-/* Group elements by the array of the regions, add those of sets: all cells are there. (vtk_groups.c) */
-void vtk_add_groups(struct vtk_input *v);
 
 /* Make the mesh; free the arrays. */
 void vtk_build(struct vtk_input *v);

@@ -138,15 +138,6 @@ MUST_CHECK enum status assembly_add_supports(const struct assembly *input, struc
 enum status condition_fail_at(const struct condition *condition, int64_t row, struct error *error,
                               const char *what);
 
-/* (*part)[cells.count], to be freed: of cells that have a node on a junction of prescribed and free boundary
- * within a smooth side the number of one of these nodes; -1: of others. */
-MUST_CHECK enum status assembly_junction_cells(const struct assembly *input, int32_t **part,
-                                               struct error *error);
-
-/* (*at_edge)[node_count], to be freed: the nodes at edges between clamped and free sides, and at re-entrant
- * edges (2D: corners); NULL: none. */
-MUST_CHECK enum status assembly_edge_nodes(const struct assembly *input, bool **at_edge, struct error *error);
-
 bool assembly_has_gravity(const struct assembly *input);
 
 /* Whether conditions on facets prescribe boundary averages, and not values at nodes. */

@@ -12,7 +12,7 @@
  * The interpolant of a flat cell also turns over where the field only bends: where the boundary bulges, a
  * node just beneath a facet passes through its chord; where it becomes concave, a node of a flat cell between
  * facets that continue each other. Such a cell is no fold if the gradient of the field itself keeps its
- * orientation (approx/field/field_turning.h). */
+ * orientation (approx/field/field.h). */
 #pragma once
 
 #include "approx/cells/crossing.h"
