@@ -40,6 +40,7 @@ static const char usage[] =
 
 #include "tool.h"
 
+#include "approx/cells/quality.h"
 #include "cell_report.h"
 #include "io/files/textfile.h"
 #include "stages/stages.h"
@@ -110,7 +111,7 @@ static int print_cells(const struct tool *tool, const struct stream *stream)
     }
     tool_check(tool, status, &error);
     for (int i = 0; i < report.listed; i++) {
-        printf("cells: row %" PRId64 ": poor: %s\n", report.poorest[i].cell,
+        printf("cells: row %" PRId64 ": poor: %s\n", report.poorest[i].item,
                cell_report_describe(&cells, &report.poorest[i], text));
     }
     if (report.poor > report.listed) {

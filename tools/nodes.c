@@ -91,7 +91,7 @@ static void report(const struct tool *tool, const struct mesh *mesh, bool verbos
     tool_note(tool, "quality of the cells: least %.2g, median %.2g", cell_report.least_median[0],
               cell_report.least_median[1]);
     for (int i = 0; i < cell_report.listed && i < 3; i++) {
-        tool_note(tool, "cell %jd: %s", cell_report.poorest[i].cell,
+        tool_note(tool, "cell %jd: %s", cell_report.poorest[i].item,
                   cell_report_describe(&cells, &cell_report.poorest[i], text));
     }
 }

@@ -54,14 +54,7 @@ int64_t keyed_end(int64_t count, const struct keyed *keyed, int64_t first)
 
 int64_t keyed_find(int64_t count, const struct keyed *keyed, const int32_t key[3])
 {
-    int64_t low = 0, high = count;
-    while (low < high) {
-        int64_t middle = low + (high - low) / 2;
-        if (compare_numbers(3, keyed[middle].key, key) < 0) {
-            low = middle + 1;
-        } else {
-            high = middle;
-        }
-    }
-    return low < count && compare_numbers(3, keyed[low].key, key) == 0 ? low : -1;
+    const struct keyed first = {{key[0], key[1], key[2]}, INT64_MIN};
+    int64_t at = lower_bound(&first, keyed, count, sizeof *keyed, compare_keyed);
+    return at < count && compare_numbers(3, keyed[at].key, key) == 0 ? at : -1;
 }

@@ -46,17 +46,21 @@ int64_t sort_distinct(int64_t count, int64_t *number)
     return kept;
 }
 
-int64_t first_from(const int64_t *ascending, int64_t low, int64_t high, int64_t least)
+int64_t lower_bound(const void *key, const void *items, int64_t count, size_t size,
+                    int (*compare)(const void *left, const void *right))
 {
+    int64_t low = 0, high = count;
     while (low < high) {
         int64_t middle = low + (high - low) / 2;
-        if (ascending[middle] < least) {
-            low = middle + 1;
-        } else {
-            high = middle;
-        }
+        bool before = compare((const char *)items + (size_t)middle * size, key) < 0;
+        *(before ? &low : &high) = middle + before;
     }
     return low;
+}
+
+int64_t first_from(const int64_t *ascending, int64_t low, int64_t high, int64_t least)
+{
+    return low + lower_bound(&least, ascending + low, high - low, sizeof *ascending, compare_int64);
 }
 
 int compare_placed(const void *left, const void *right)

@@ -3,6 +3,7 @@
 
 #include "base/status.h"
 
+#include <stddef.h>
 #include <stdint.h>
 
 /* List the items 0, 1, ... by rows. Item i belongs to the `per` rows row[i * per] and following; -1: none.
@@ -19,7 +20,10 @@ int compare_numbers(int count, const int32_t *a, const int32_t *b);
 /* Sort numbers, and remove repetitions; returns how many remain. */
 int64_t sort_distinct(int64_t count, int64_t *number);
 
-/* Binary search: the first i in [low, high) with ascending[i] >= least; `high` if there is none. */
+/* Binary search: the first of `count` ascending items, as qsort orders them, that does not come before *key;
+ * `count` if there is none. Of numbers: the first i in [low, high) with ascending[i] >= least, or `high`. */
+int64_t lower_bound(const void *key, const void *items, int64_t count, size_t size,
+                    int (*compare)(const void *left, const void *right));
 int64_t first_from(const int64_t *ascending, int64_t low, int64_t high, int64_t least);
 
 /* An item by its place along a line. */

@@ -1,14 +1,15 @@
 #include "cell_report.h"
 
 #include "approx/cells/parts.h"
+#include "approx/cells/quality.h"
 #include "approx/support/support.h"
 #include "approx/cells/hanging.h"
 #include "approx/cells/thin.h"
-#include "base/lists.h"
 #include "base/memory.h"
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum status cell_report_make(const struct cells *cells, double bound, struct cell_report *report,
                              struct error *error)
@@ -16,24 +17,27 @@ enum status cell_report_make(const struct cells *cells, double bound, struct cel
     *report = (struct cell_report){0};
     NEW_SCRATCH(int32_t, part, cells->count, error);
     RETURN_IF_ERROR(cells_parts(cells, part, &report->bodies, error));
-    NEW_SCRATCH(double, quality, cells->count, error);
+    NEW_SCRATCH(struct placed, quality, cells->count, error);
     for (int64_t c = 0; c < cells->count; c++) {
-        quality[c] = cell_quality(cells, c);
+        quality[c] = (struct placed){cell_quality(cells, c), c};
         report->volume += cell_volume(cells, c);
     }
-    qsort(quality, (size_t)cells->count, sizeof *quality, compare_double);
-    report->least_median[0] = cells->count > 0 ? quality[0] : 0;
-    report->least_median[1] = cells->count > 0 ? quality[cells->count / 2] : 0;
-    report->poor = cells_poorest(cells, bound, CELL_REPORT_MOST, report->poorest);
+    qsort(quality, (size_t)cells->count, sizeof *quality, compare_placed);
+    report->least_median[0] = cells->count > 0 ? quality[0].place : 0;
+    report->least_median[1] = cells->count > 0 ? quality[cells->count / 2].place : 0;
+    while (report->poor < cells->count && quality[report->poor].place < bound) {
+        report->poor++;
+    }
     report->listed = report->poor < CELL_REPORT_MOST ? (int)report->poor : CELL_REPORT_MOST;
+    memcpy(report->poorest, quality, (size_t)report->listed * sizeof *quality);
     return STATUS_OK;
 }
 
-const char *cell_report_describe(const struct cells *cells, const struct poor_cell *poor, char text[128])
+const char *cell_report_describe(const struct cells *cells, const struct placed *poor, char text[128])
 {
     double centre[3];
-    cell_centroid(cells, poor->cell, centre);
-    snprintf(text, 128, "quality %.2g at %s m", poor->quality, POINT_TEXT(cells->dim, centre));
+    cell_centroid(cells, poor->item, centre);
+    snprintf(text, 128, "quality %.2g at %s m", poor->place, POINT_TEXT(cells->dim, centre));
     return text;
 }
 

@@ -2,8 +2,7 @@
 #pragma once
 
 #include "approx/cells/cells.h"
-#include "approx/cells/quality.h"
-#include "base/box.h"
+#include "base/lists.h"
 #include "tool.h"
 
 /* Most cells that are reported one by one. */
@@ -19,7 +18,7 @@ struct cell_report {
     double least_median[2]; /* least and median quality */
     int64_t poor;           /* number of cells below the bound; the poorest of them: */
     int listed;
-    struct poor_cell poorest[CELL_REPORT_MOST];
+    struct placed poorest[CELL_REPORT_MOST]; /* the quality of each, and its number */
 };
 
 /* Cells of quality below `bound` are listed. */
@@ -27,7 +26,7 @@ MUST_CHECK enum status cell_report_make(const struct cells *cells, double bound,
                                         struct error *error);
 
 /* "quality 3.1e-05 at (0.01, 0.02, 0.03) m" of a poor cell. */
-const char *cell_report_describe(const struct cells *cells, const struct poor_cell *poor, char text[128]);
+const char *cell_report_describe(const struct cells *cells, const struct placed *poor, char text[128]);
 
 /* Tell nodes that hang on facets of other cells (hanging.h) into said[512]: "nodes on ...", or "". *parts:
  * whether one body parts there. */

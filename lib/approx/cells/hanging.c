@@ -132,21 +132,6 @@ static bool is_beside(const struct search *search, int64_t facet, int32_t node)
     return false;
 }
 
-/* The first of the sorted nodes that is not below `least`. */
-static int64_t first_place(const struct search *search, double least)
-{
-    int64_t begin = 0, end = search->count;
-    while (begin < end) {
-        int64_t middle = begin + (end - begin) / 2;
-        if (search->node[middle].place < least) {
-            begin = middle + 1;
-        } else {
-            end = middle;
-        }
-    }
-    return begin;
-}
-
 /* Mark the nodes that hang on a facet. */
 static void mark_hanging(const struct search *search, int64_t facet, int32_t body[], int8_t mark[])
 {
@@ -165,7 +150,8 @@ static void mark_hanging(const struct search *search, int64_t facet, int32_t bod
         low[a] = fmin(fmin(corner[0][a], corner[1][a]), corner[dim - 1][a]) - near;
         high[a] = fmax(fmax(corner[0][a], corner[1][a]), corner[dim - 1][a]) + near;
     }
-    for (int64_t i = first_place(search, low[search->axis]);
+    const struct placed begin = {low[search->axis], -1};
+    for (int64_t i = lower_bound(&begin, search->node, search->count, sizeof begin, compare_placed);
          i < search->count && search->node[i].place <= high[search->axis]; i++) {
         int32_t n = (int32_t)search->node[i].item;
         const double *x = search->cells->x + (int64_t)n * dim;

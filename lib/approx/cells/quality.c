@@ -46,26 +46,3 @@ double cell_quality(const struct cells *cells, int64_t cell)
     double quality = dim == 2 ? triangle_quality(volume, x) : tetrahedron_quality(volume, x);
     return isfinite(quality) ? quality : 0;
 }
-
-int64_t cells_poorest(const struct cells *cells, double bound, int most, struct poor_cell poorest[])
-{
-    int64_t below = 0;
-    int kept = 0;
-    for (int64_t c = 0; c < cells->count; c++) {
-        double quality = cell_quality(cells, c);
-        if (!(quality < bound)) {
-            continue;
-        }
-        below++;
-        int at = kept;
-        while (at > 0 && poorest[at - 1].quality > quality) {
-            at--;
-        }
-        if (at < most) {
-            kept += kept < most;
-            memmove(&poorest[at + 1], &poorest[at], (size_t)(kept - 1 - at) * sizeof *poorest);
-            poorest[at] = (struct poor_cell){c, quality};
-        }
-    }
-    return below;
-}

@@ -11,12 +11,3 @@ double cell_quality(const struct cells *cells, int64_t cell);
 /* A cell of lower quality is poor; smoothed cells are then merged with a neighbour
  * (solid/body/merged_cells.h). */
 #define POOR_QUALITY 1e-2
-
-struct poor_cell {
-    int64_t cell;
-    double quality;
-};
-
-/* poorest[most] = the poorest cells of quality below `bound`, the poorest first. Returns the number of cells
- * below it. */
-int64_t cells_poorest(const struct cells *cells, double bound, int most, struct poor_cell poorest[]);

@@ -46,17 +46,17 @@ static enum status find_nearest(const struct cells *cells, const double *spacing
                                 int64_t count, const double *x, int64_t *nearest, struct error *error)
 {
     int dim = cells->dim;
-    struct pieces pieces = {dim, dim + 1, cells->count, cells->x, cells->node};
+    struct items items = {dim, cells->count, dim + 1, cells->node, cells->x};
     if (cells->count == 0) {
-        pieces = (struct pieces){dim, 1, cells->node_count, cells->x, NULL};
+        items = (struct items){dim, cells->node_count, 1, NULL, cells->x};
         within = 2.0;
     }
-    NEW_SCRATCH(double, reach, pieces.count, error);
-    for (int64_t i = 0; i < pieces.count * pieces.corners; i++) {
-        double size = spacing[pieces.node != NULL ? pieces.node[i] : i];
-        reach[i / pieces.corners] = fmax(reach[i / pieces.corners], (within + COARSE_ROUND_OFF) * size);
+    NEW_SCRATCH(double, reach, items.count, error);
+    for (int64_t i = 0; i < items.count * items.corners; i++) {
+        double size = spacing[items.item != NULL ? items.item[i] : i];
+        reach[i / items.corners] = fmax(reach[i / items.corners], (within + COARSE_ROUND_OFF) * size);
     }
-    return pieces_nearest(&pieces, reach, count, x, nearest, error);
+    return items_nearest(&items, reach, count, x, nearest, error);
 }
 
 enum status field_outside(const struct cells *cells, const double *spacing, double within, int64_t count,

@@ -67,43 +67,43 @@ void items_facing(const struct items *items, const double *direction, double deg
 
 /* ---- distances ---- */
 
-static void find_corners(const struct pieces *pieces, int64_t piece, const double *corner[4])
+static void find_corners(const struct items *items, int64_t item, const double *corner[4])
 {
-    for (int k = 0; k < pieces->corners; k++) {
-        int64_t at = piece * pieces->corners + k;
-        corner[k] = pieces->x + (pieces->node != NULL ? pieces->node[at] : at) * pieces->dim;
+    for (int k = 0; k < items->corners; k++) {
+        int64_t at = item * items->corners + k;
+        corner[k] = items->x + (items->item != NULL ? items->item[at] : at) * items->dim;
     }
 }
 
-/* Balls around the pieces that hold all points within their reach: those that contain a point are
+/* Balls around the items that hold all points within their reach: those that contain a point are
  * candidates. */
-static void enclose(const struct pieces *pieces, const double *reach, double *centre, double *radius)
+static void enclose(const struct items *items, const double *reach, double *centre, double *radius)
 {
-    int dim = pieces->dim;
-    for (int64_t p = 0; p < pieces->count; p++) {
+    int dim = items->dim;
+    for (int64_t p = 0; p < items->count; p++) {
         const double *corner[4];
         double farthest = 0;
-        find_corners(pieces, p, corner);
-        for (int i = 0; i < pieces->corners; i++) {
-            add_scaled(dim, 1.0 / pieces->corners, corner[i], centre + p * dim);
+        find_corners(items, p, corner);
+        for (int i = 0; i < items->corners; i++) {
+            add_scaled(dim, 1.0 / items->corners, corner[i], centre + p * dim);
         }
-        for (int i = 0; i < pieces->corners; i++) {
+        for (int i = 0; i < items->corners; i++) {
             farthest = fmax(farthest, vector_distance(dim, corner[i], centre + p * dim));
         }
         radius[p] = (reach[p] + farthest) * (1 + 1e-9);
     }
 }
 
-enum status pieces_nearest(const struct pieces *pieces, const double *reach, int64_t count,
-                           const double *points, int64_t *nearest, struct error *error)
+enum status items_nearest(const struct items *items, const double *reach, int64_t count, const double *points,
+                          int64_t *nearest, struct error *error)
 {
-    int dim = pieces->dim;
+    int dim = items->dim;
     FREED_BY(point_grid_free) struct point_grid grid = {0};
     FREED_BY(index_list_free) struct index_list near = {0};
-    NEW_SCRATCH(double, centre, pieces->count * dim, error);
-    NEW_SCRATCH(double, radius, pieces->count, error);
-    enclose(pieces, reach, centre, radius);
-    RETURN_IF_ERROR(point_grid_build(&grid, dim, pieces->count, centre, radius, error));
+    NEW_SCRATCH(double, centre, items->count * dim, error);
+    NEW_SCRATCH(double, radius, items->count, error);
+    enclose(items, reach, centre, radius);
+    RETURN_IF_ERROR(point_grid_build(&grid, dim, items->count, centre, radius, error));
     for (int64_t p = 0; p < count; p++) {
         double least = INFINITY;
         near.count = 0;
@@ -111,8 +111,8 @@ enum status pieces_nearest(const struct pieces *pieces, const double *reach, int
         RETURN_IF_ERROR(point_grid_query(&grid, points + p * dim, 1, &near, error));
         for (int64_t i = 0; i < near.count && least > 0; i++) {
             const double *corner[4];
-            find_corners(pieces, near.index[i], corner);
-            double distance = sqrt(simplex_distance2(dim, pieces->corners - 1, corner, points + p * dim));
+            find_corners(items, near.index[i], corner);
+            double distance = sqrt(simplex_distance2(dim, items->corners - 1, corner, points + p * dim));
             if (distance <= reach[near.index[i]] && distance < least) {
                 least = distance;
                 nearest[p] = near.index[i];
@@ -122,19 +122,19 @@ enum status pieces_nearest(const struct pieces *pieces, const double *reach, int
     return STATUS_OK;
 }
 
-enum status items_near(const struct items *items, const struct pieces *pieces, double reach, bool *chosen,
+enum status items_near(const struct items *items, const struct items *others, double reach, bool *chosen,
                        struct error *error)
 {
     NEW_SCRATCH(double, centre, items->count * items->dim, error);
-    NEW_SCRATCH(double, reaches, pieces->count, error);
+    NEW_SCRATCH(double, reaches, others->count, error);
     NEW_SCRATCH(int64_t, nearest, items->count, error);
-    for (int64_t p = 0; p < pieces->count; p++) {
+    for (int64_t p = 0; p < others->count; p++) {
         reaches[p] = reach;
     }
     for (int64_t i = 0; i < items->count; i++) {
         item_centre(items, i, centre + i * items->dim);
     }
-    RETURN_IF_ERROR(pieces_nearest(pieces, reaches, items->count, centre, nearest, error));
+    RETURN_IF_ERROR(items_nearest(others, reaches, items->count, centre, nearest, error));
     for (int64_t i = 0; i < items->count; i++) {
         chosen[i] = nearest[i] >= 0;
     }

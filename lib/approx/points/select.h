@@ -6,12 +6,14 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Nodes (corners = 1), facets or cells: item[count * corners] indexes x[... * dim]. */
+/* Nodes or points (corners = 1), segments (2), triangles (3), tetrahedra (4): facets or cells in dim
+ * dimensions. */
 struct items {
     int dim;
     int64_t count;
     int corners;
-    const int32_t *item;
+    const int32_t *item; /* count * corners: the places of their corners in x; of items_near and items_nearest
+                            also NULL: one after the other */
     const double *x;
 };
 
@@ -38,19 +40,11 @@ void items_in_shape(const struct items *items, const struct shape *shape, bool *
 /* chosen[items->count]: facets (corners = dim) whose outward normal is within `degrees` of a direction. */
 void items_facing(const struct items *items, const double *direction, double degrees, bool *chosen);
 
-/* Points (corners = 1), segments (2), triangles (3) or tetrahedra (4) in dim dimensions. */
-struct pieces {
-    int dim, corners;
-    int64_t count;
-    const double *x;
-    const int32_t *node; /* count * corners: the places of their corners in x; NULL: one after the other */
-};
+/* nearest[count]: the item nearest to each of points[count * dim], the first of several; -1: all are farther
+ * than their reach[items->count], m, positive. */
+MUST_CHECK enum status items_nearest(const struct items *items, const double *reach, int64_t count,
+                                     const double *points, int64_t *nearest, struct error *error);
 
-/* nearest[count]: the piece nearest to each of points[count * dim], the first of several; -1: all are farther
- * than their reach[pieces->count], m, positive. */
-MUST_CHECK enum status pieces_nearest(const struct pieces *pieces, const double *reach, int64_t count,
-                                      const double *points, int64_t *nearest, struct error *error);
-
-/* chosen[items->count]: items whose centre is within `reach` (positive, m) of a piece. */
-MUST_CHECK enum status items_near(const struct items *items, const struct pieces *pieces, double reach,
+/* chosen[items->count]: items whose centre is within `reach` (positive, m) of one of the others. */
+MUST_CHECK enum status items_near(const struct items *items, const struct items *others, double reach,
                                   bool *chosen, struct error *error);

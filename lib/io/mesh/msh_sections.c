@@ -126,11 +126,9 @@ static void sort_entities(struct msh_reader *r)
 /* The groups of an entity, *count of them; NULL: it is not in the file. */
 static const struct msh_entity *find_entity(const struct msh_reader *r, int64_t key, int64_t *count)
 {
-    int64_t low = 0, high = r->entity_count;
-    while (low < high) {
-        int64_t middle = (low + high) / 2;
-        *(r->entities[middle].key < key ? &low : &high) = middle + (r->entities[middle].key < key);
-    }
+    const struct msh_entity first = {.key = key, .group = INT64_MIN};
+    int64_t low = lower_bound(&first, r->entities, r->entity_count, sizeof first, compare_entities);
+    int64_t high = low;
     for (*count = 0; high < r->entity_count && r->entities[high].key == key; high++) {
         ++*count;
     }

@@ -124,7 +124,7 @@ static enum status choose_near(const struct term *term)
     int dim = term->body->cells.dim;
     bool surface = term->text[0] == 'a';
     FREED_BY(table_free) struct table table = {0};
-    struct pieces pieces = {.dim = dim, .corners = surface ? dim : 1};
+    struct items pieces = {.dim = dim, .corners = surface ? dim : 1};
     SCRATCH double *x = NULL;
     double reach = 0;
     char number[64] = "";
