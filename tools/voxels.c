@@ -200,13 +200,71 @@ static void report(const struct tool *tool, const struct label_image *image, con
     }
 }
 
-static void write_stream(const struct tool *tool, const struct label_image *image, struct label_cells *result)
+static void write_stream(const struct tool *tool, const struct label_image *image,
+                         const struct label_cells *result)
 {
-    FREED_BY(mesh_free) struct mesh mesh = {0};
     FREED_BY(stream_free) struct stream stream = {0};
-    TOOL_TRY(tool, label_mesh_make(image, result, &mesh, &error));
-    TOOL_TRY(tool, mesh_put(&mesh, &stream, &error));
+    TOOL_TRY(tool, label_mesh_put(image, result, &stream, &error));
     tool_write(tool, &stream);
+}
+
+/* Sizes at the nodes of cells, as views of a stream, which is to be freed. */
+struct label_sizes {
+    struct stream stream;
+    struct cells cells;
+    const double *size; /* cells.node_count, m, positive; NULL: no sizes */
+};
+
+/* The value of --fine, "3mm" or "3mm:ventricles,tumour", which must be less than `spacing`, m: *finest, m.
+ * Returns an array of labels, to be freed; NULL: of all. Exits on failure. */
+static bool *label_fine_parse(const struct tool *tool, const struct label_image *image, const char *text,
+                              double spacing, double *finest)
+{
+    bool *fine = NULL;
+    SCRATCH char *copy = tool_memory(tool, strdup(text));
+    char *names = copy;
+    const char *length = strsep(&names, ":");
+    TOOL_TRY(tool, parse_length(length, "--fine", LEAST_LENGTH, finest, &error));
+    if (*finest >= spacing) {
+        tool_fail(tool, STATUS_INPUT, "--fine: %s is not less than the spacing of -h", length);
+    }
+    if (names != NULL) {
+        TOOL_TRY(tool, NEW_ARRAY(&fine, image->labels.count, &error));
+    }
+    while (names != NULL) {
+        const char *name = strsep(&names, ",");
+        int64_t label = names_find(&image->table.names, name);
+        if (label <= 0) {
+            tool_fail(tool, STATUS_INPUT, "--fine: no label '%.60s'", name);
+        }
+        fine[label] = true;
+    }
+    return fine;
+}
+
+/* Read the sections nodes.x, cells and size of the stream `file` (NULL: no sizes), in the dimension of the
+ * image. Exits on failure. */
+static void label_sizes_read(const struct tool *tool, const struct label_image *image, const char *file,
+                             struct label_sizes *sizes)
+{
+    const struct section *section;
+    *sizes = (struct label_sizes){0};
+    if (file == NULL) {
+        return;
+    }
+    tool_read(tool, file, &sizes->stream);
+    TOOL_TRY(tool, stream_cells(&sizes->stream, true, &sizes->cells, &error));
+    TOOL_TRY(tool, stream_need(&sizes->stream, "size", TYPE_F8, 1, "sizefield -b", &section, &error));
+    if (sizes->cells.dim != image->labels.dim) {
+        tool_fail(tool, STATUS_INPUT, "--sizes: cells in %dD, the image is of a body in %dD",
+                  sizes->cells.dim, image->labels.dim);
+    }
+    if (section->rows != sizes->cells.node_count) {
+        tool_fail(tool, STATUS_INPUT, "--sizes: size: %jd rows for %jd nodes", section->rows,
+                  sizes->cells.node_count);
+    }
+    sizes->size = section->data;
+    TOOL_TRY(tool, fail_in(&error, section_check_numbers(section, POSITIVE, &error), "--sizes"));
 }
 
 /* Progress on a terminal: the step that begins; NULL: none. */

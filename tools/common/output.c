@@ -75,19 +75,15 @@ static int open_new(struct output *output)
     return descriptor;
 }
 
-static enum status open_temporary(struct output *output, bool grows, const struct stat *present,
-                                  struct error *error)
+/* Open the temporary file, with the mode of the one that is to be replaced; -1: it fails. */
+static int open_temporary(struct output *output, bool grows, const struct stat *present)
 {
     output->temporary = temporary_name(output->target, grows);
-    if (output->temporary == NULL) {
-        return fail_memory(error, output->name);
-    }
-    output->descriptor =
-        grows ? open(output->temporary, O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0666)
-              : open_new(output);
-    return output->descriptor >= 0 && fchmod(output->descriptor, file_mode(present)) == 0
-               ? STATUS_OK
-               : fail_system(error, output->name);
+    int descriptor =
+        output->temporary == NULL ? -1
+        : grows ? open(output->temporary, O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0666)
+                : open_new(output);
+    return descriptor >= 0 && fchmod(descriptor, file_mode(present)) == 0 ? descriptor : -1;
 }
 
 /* Close and remove the temporary file; the former file stays unchanged. */
@@ -95,12 +91,10 @@ static void abandon(struct output *output)
 {
     if (output->file != NULL && output->file != stdout) {
         (void)fclose(output->file);
-    } else if (output->file == NULL && output->descriptor >= 0) {
-        close(output->descriptor);
     }
     remove_pending();
     FREE_ALL(output->temporary, output->target);
-    *output = (struct output){.descriptor = -1, .name = output->name};
+    *output = (struct output){.name = output->name};
 }
 
 static enum status open_named(struct output *output, bool grows, struct error *error)
@@ -111,25 +105,23 @@ static enum status open_named(struct output *output, bool grows, struct error *e
     if (exists && S_ISDIR(present.st_mode)) {
         return fail(error, STATUS_INPUT, "%s: is a directory", name);
     }
+    int descriptor = -1;
     if (exists && !S_ISREG(present.st_mode)) {
-        output->descriptor = open(name, O_WRONLY | O_CLOEXEC);
+        descriptor = open(name, O_WRONLY | O_CLOEXEC);
     } else {
         output->target = exists ? realpath(name, NULL) : strdup(name);
-        if (output->target == NULL) {
-            return fail_system(error, output->name);
-        }
-        RETURN_IF_ERROR(open_temporary(output, grows, exists ? &present : NULL, error));
+        descriptor = output->target != NULL ? open_temporary(output, grows, exists ? &present : NULL) : -1;
     }
-    output->file = output->descriptor >= 0 ? fdopen(output->descriptor, "w") : NULL;
+    output->file = descriptor >= 0 ? fdopen(descriptor, "w") : NULL;
     return output->file != NULL ? STATUS_OK : fail_system(error, output->name);
 }
 
 enum status output_open(struct output *output, const char *name, bool grows, struct error *error)
 {
     enum status status = STATUS_OK;
-    *output = (struct output){.descriptor = STDOUT_FILENO, .file = stdout, .name = "standard output"};
+    *output = (struct output){.file = stdout, .name = "standard output"};
     if (name != NULL) {
-        *output = (struct output){.descriptor = -1, .name = name};
+        *output = (struct output){.name = name};
         status = open_named(output, grows, error);
     }
     if (status != STATUS_OK) {
@@ -164,14 +156,13 @@ enum status output_end(struct output *output, enum status status, struct error *
         return status == STATUS_OK && is_stdout ? tool_close_stdout(error) : status;
     }
     /* Some file systems report only now that there is no space. */
-    if (output->temporary != NULL && fsync(output->descriptor) != 0) {
+    if (output->temporary != NULL && fsync(fileno(output->file)) != 0) {
         status = fail_system(error, output->name);
     }
     if (fclose(output->file) != 0 && status == STATUS_OK) {
         status = fail_system(error, output->name);
     }
     output->file = NULL;
-    output->descriptor = -1;
     if (status == STATUS_OK && output->temporary != NULL) {
         if (rename(output->temporary, output->target) == 0) {
             pending = NULL;

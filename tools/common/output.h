@@ -4,8 +4,7 @@
 #include "tool.h"
 
 struct output {
-    int descriptor;   /* to write to, */
-    FILE *file;       /* or to print to */
+    FILE *file;
     const char *name; /* given by the user, for messages; the caller's */
     char *target;     /* the file to replace, with symbolic links followed */
     char *temporary;  /* temporary file in the same folder; NULL if the target is a device or pipe */

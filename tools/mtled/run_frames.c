@@ -234,7 +234,7 @@ void run_frames_stop(struct run *run, const char *reason)
     }
     if (put_sections(run, true, &ignored) == STATUS_OK &&
         stream_writer_end(&frames->writer, reason, &ignored) == STATUS_OK) {
-        (void)fsync(frames->output.descriptor);
+        (void)fsync(fileno(frames->output.file));
     }
 }
 

@@ -8,7 +8,7 @@
 #include "approx/labels/label_cells.h"
 #include "io/image/image.h"
 #include "io/image/label_table.h"
-#include "io/mesh/msh.h"
+#include "stages/views.h"
 
 struct label_image {
     struct labels labels;
@@ -28,28 +28,11 @@ struct label_image {
 void label_image_read(const struct tool *tool, struct label_image *image);
 void label_image_free(struct label_image *image);
 
-/* The value of --fine, "3mm" or "3mm:ventricles,tumour", which must be less than `spacing`, m: *finest, m.
- * Returns an array of labels, to be freed; NULL: of all. Exits on failure. */
-bool *label_fine_parse(const struct tool *tool, const struct label_image *image, const char *text,
-                       double spacing, double *finest);
-
-/* Sizes at the nodes of cells, as views of a stream, which is to be freed. */
-struct label_sizes {
-    struct stream stream;
-    struct cells cells;
-    const double *size; /* cells.node_count, m, positive; NULL: no sizes */
-};
-
-/* Read the sections nodes.x, cells and size of the stream `file` (NULL: no sizes), in the dimension of the
- * image. Exits on failure. */
-void label_sizes_read(const struct tool *tool, const struct label_image *image, const char *file,
-                      struct label_sizes *sizes);
-
-/* The mesh that goes into a stream. Regions are the labels with cells. Facets are the boundary, oriented
- * outward, in groups A|B with the label A within and B beyond. Node sets are the
- * interfaces A|B between two regions, A the lower label. The mesh takes the nodes and cells of *result. */
-MUST_CHECK enum status label_mesh_make(const struct label_image *image, struct label_cells *result,
-                                       struct mesh *mesh, struct error *error);
+/* Put the cells into a stream, which borrows nodes and cells. Regions are the labels with cells. Facets are
+ * the boundary, oriented outward, in groups A|B with the label A within and B beyond. Node sets are the
+ * interfaces A|B between two regions, A the lower label. */
+MUST_CHECK enum status label_mesh_put(const struct label_image *image, const struct label_cells *result,
+                                      struct stream *stream, struct error *error);
 
 /* The surface of labels as a table for the rigid bodies of scenes: the facets, and their move outward. */
 struct label_surface_options {

@@ -15,54 +15,53 @@ static int compare_members(const void *left, const void *right)
     return compare_numbers(3, left, right);
 }
 
-static bool same_group(const struct member *a, const struct member *b)
+static enum status put_regions(const struct label_image *image, const struct label_cells *result,
+                               struct stream *stream, struct error *error)
 {
-    return a->inner == b->inner && a->outer == b->outer;
-}
-
-static enum status make_regions(const struct label_image *image, const struct label_cells *result,
-                                struct mesh *mesh, struct error *error)
-{
+    FREED_BY(names_free) struct names names = {0};
     NEW_SCRATCH(int32_t, region, image->labels.count, error);
-    RETURN_IF_ERROR(NEW_ARRAY(&mesh->cell_region, result->cell_count, error));
+    NEW_SCRATCH(int32_t, of_cell, result->cell_count, error);
     for (int64_t c = 0; c < result->cell_count; c++) {
         region[result->label[c]] = 1;
     }
     for (int32_t l = 1; l < image->labels.count; l++) {
         if (region[l] != 0) {
-            region[l] = (int32_t)mesh->regions.count;
-            RETURN_IF_ERROR(names_add(&mesh->regions, image->table.names.name[l], error));
+            region[l] = (int32_t)names.count;
+            RETURN_IF_ERROR(names_add(&names, image->table.names.name[l], error));
         }
     }
     for (int64_t c = 0; c < result->cell_count; c++) {
-        mesh->cell_region[c] = region[result->label[c]];
+        of_cell[c] = region[result->label[c]];
     }
-    return STATUS_OK;
+    return stream_put_groups(stream, GROUP_REGION, &names, result->cell_count, NULL, &of_cell, error);
 }
 
-static enum status make_facets(const struct label_image *image, const struct label_cells *result,
-                               struct mesh *mesh, struct error *error)
+/* Put a group A|B for each interface, with its items, once each: with these nodes. */
+static enum status put_members(const struct label_image *image, enum group_kind kind, int64_t count,
+                               struct member *member, int corners, const int32_t *node_of,
+                               struct stream *stream, struct error *error)
 {
-    int dim = result->dim;
-    NEW_SCRATCH(struct member, member, result->facet_count, error);
-    RETURN_IF_ERROR(NEW_ARRAY(&mesh->facets, result->facet_count * dim, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&mesh->facet_set, result->facet_count, error));
-    for (int32_t f = 0; f < (int32_t)result->facet_count; f++) {
-        member[f] = (struct member){result->side[2 * f], result->side[2 * f + 1], f};
+    FREED_BY(names_free) struct names names = {0};
+    int64_t kept = 0;
+    NEW_SCRATCH(int32_t, node, count * corners, error);
+    NEW_SCRATCH(int32_t, group, count, error);
+    if (count > 0) {
+        qsort(member, (size_t)count, sizeof *member, compare_members);
     }
-    qsort(member, (size_t)result->facet_count, sizeof *member, compare_members);
-    for (int64_t f = 0; f < result->facet_count; f++) {
-        if (f == 0 || !same_group(&member[f], &member[f - 1])) {
-            RETURN_IF_ERROR(names_print(&mesh->facet_sets, error, "%s|%s",
-                                        image->table.names.name[member[f].inner],
-                                        image->table.names.name[member[f].outer]));
+    for (int64_t i = 0; i < count; i++) {
+        const struct member *own = &member[i], *before = &member[i > 0 ? i - 1 : 0];
+        if (i > 0 && compare_members(own, before) == 0) {
+            continue;
         }
-        mesh->facet_set[f] = (int32_t)mesh->facet_sets.count - 1;
-        memcpy(mesh->facets + f * dim, result->facet + (int64_t)member[f].item * dim,
-               (size_t)dim * sizeof *mesh->facets);
+        if (i == 0 || own->inner != before->inner || own->outer != before->outer) {
+            RETURN_IF_ERROR(names_print(&names, error, "%s|%s", image->table.names.name[own->inner],
+                                        image->table.names.name[own->outer]));
+        }
+        memcpy(node + kept * corners, node_of != NULL ? node_of + (int64_t)own->item * corners : &own->item,
+               (size_t)corners * sizeof *node);
+        group[kept++] = (int32_t)names.count - 1;
     }
-    mesh->facet_count = result->facet_count;
-    return STATUS_OK;
+    return stream_put_groups(stream, kind, &names, kept, &node, &group, error);
 }
 
 /* List the nodes of faces between two regions, once for each face. */
@@ -86,43 +85,24 @@ static enum status find_interfaces(const struct cells *cells, const int32_t *lab
     return STATUS_OK;
 }
 
-static enum status make_sets(const struct label_image *image, const struct label_cells *result,
-                             struct mesh *mesh, struct error *error)
+enum status label_mesh_put(const struct label_image *image, const struct label_cells *result,
+                           struct stream *stream, struct error *error)
 {
     struct cells cells = label_cells_view(result);
-    int64_t kept = 0, count = 0;
-    SCRATCH struct member *member = NULL;
-    RETURN_IF_ERROR(find_interfaces(&cells, result->label, &member, &count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&mesh->set_idx, count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&mesh->set_ptr, count + 1, error));
-    if (count > 0) {
-        qsort(member, (size_t)count, sizeof *member, compare_members);
+    char attributes[64];
+    int64_t count = 0;
+    SCRATCH struct member *shared = NULL;
+    NEW_SCRATCH(struct member, facet, result->facet_count, error);
+    for (int32_t f = 0; f < (int32_t)result->facet_count; f++) {
+        facet[f] = (struct member){result->side[2 * f], result->side[2 * f + 1], f};
     }
-    for (int64_t i = 0; i < count; i++) {
-        if (i > 0 && compare_members(&member[i], &member[i - 1]) == 0) {
-            continue;
-        }
-        if (i == 0 || !same_group(&member[i], &member[i - 1])) {
-            mesh->set_ptr[mesh->node_sets.count] = kept;
-            RETURN_IF_ERROR(names_print(&mesh->node_sets, error, "%s|%s",
-                                        image->table.names.name[member[i].inner],
-                                        image->table.names.name[member[i].outer]));
-        }
-        mesh->set_idx[kept++] = member[i].item;
-    }
-    mesh->set_ptr[mesh->node_sets.count] = kept;
-    return STATUS_OK;
-}
-
-enum status label_mesh_make(const struct label_image *image, struct label_cells *result, struct mesh *mesh,
-                            struct error *error)
-{
-    *mesh =
-        (struct mesh){.dim = result->dim, .node_count = result->node_count, .cell_count = result->cell_count};
-    RETURN_IF_ERROR(make_regions(image, result, mesh, error));
-    RETURN_IF_ERROR(make_facets(image, result, mesh, error));
-    RETURN_IF_ERROR(make_sets(image, result, mesh, error));
-    mesh->x = array_take(&result->x);
-    mesh->cells = array_take(&result->cell);
-    return STATUS_OK;
+    RETURN_IF_ERROR(find_interfaces(&cells, result->label, &shared, &count, error));
+    RETURN_IF_ERROR(stream_put(stream, "nodes.x", TYPE_F8, result->node_count, result->dim,
+                               vector_attributes(result->dim, "m", attributes), result->x, false, error));
+    RETURN_IF_ERROR(stream_put(stream, "cells", TYPE_I4, result->cell_count, result->dim + 1, "",
+                               result->cell, false, error));
+    RETURN_IF_ERROR(put_regions(image, result, stream, error));
+    RETURN_IF_ERROR(put_members(image, GROUP_FACETS, result->facet_count, facet, result->dim, result->facet,
+                                stream, error));
+    return put_members(image, GROUP_NODES, count, shared, 1, NULL, stream, error);
 }
