@@ -250,6 +250,19 @@ enum status faces_find(const struct faces *faces, int64_t count, const int32_t *
     return STATUS_OK;
 }
 
+enum status faces_mark(const struct faces *faces, int64_t count, const int32_t *facet, bool *marked,
+                       struct error *error)
+{
+    NEW_SCRATCH(int64_t, found, count, error);
+    RETURN_IF_ERROR(faces_find(faces, count, facet, found, error));
+    for (int64_t i = 0; i < count; i++) {
+        if (found[i] >= 0) {
+            marked[found[i]] = true;
+        }
+    }
+    return STATUS_OK;
+}
+
 enum status cells_across(const struct cells *cells, int32_t *across, struct error *error)
 {
     int corners = cells->dim + 1;

@@ -64,6 +64,9 @@ void faces_free(struct faces *faces);
  */
 MUST_CHECK enum status faces_find(const struct faces *faces, int64_t count, const int32_t *facet,
                                   int64_t *found, struct error *error);
+/* marked[faces->count] = true of those that are found. */
+MUST_CHECK enum status faces_mark(const struct faces *faces, int64_t count, const int32_t *facet,
+                                  bool *marked, struct error *error);
 
 /* across[count * (dim + 1)]: the cell beyond the face opposite each vertex, -1 on the boundary. Errors as
  * faces_build. */

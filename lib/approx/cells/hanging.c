@@ -55,19 +55,6 @@ static void search_free(struct search *search)
     FREE_ALL(search->node, search->face_ptr, search->face_idx, search->named);
 }
 
-static enum status mark_named(struct search *search, int64_t count, const int32_t *facet, struct error *error)
-{
-    NEW_SCRATCH(int64_t, found, count, error);
-    RETURN_IF_ERROR(NEW_ARRAY(&search->named, search->boundary->count, error));
-    RETURN_IF_ERROR(faces_find(search->boundary, count, facet, found, error));
-    for (int64_t i = 0; i < count; i++) {
-        if (found[i] >= 0) {
-            search->named[found[i]] = true;
-        }
-    }
-    return STATUS_OK;
-}
-
 /* Whether all nodes but one of a face are among corner[count]. */
 static bool borders(int dim, const int32_t *face, int count, const int32_t *corner)
 {
@@ -179,7 +166,8 @@ enum status cells_find_hanging(const struct cells *cells, int64_t named_count, c
     *joined = *apart = (struct hanging_nodes){0};
     RETURN_IF_ERROR(faces_build(cells, true, &boundary, error));
     RETURN_IF_ERROR(search_build(cells, &boundary, &search, error));
-    RETURN_IF_ERROR(mark_named(&search, named_count, named, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&search.named, boundary.count, error));
+    RETURN_IF_ERROR(faces_mark(&boundary, named_count, named, search.named, error));
     NEW_SCRATCH(int32_t, body, cells->node_count, error);
     NEW_SCRATCH(int8_t, mark, cells->node_count, error);
     set_join_cells(cells->node_count, cells->count, dim + 1, cells->node, body);

@@ -230,13 +230,7 @@ enum status assembly_held_faces(const struct assembly *input, int least, bool **
         const struct condition *condition = &input->conditions[i];
         const struct facet_set *set = &condition->facets;
         if (prescription_directions(condition, input->cells.dim) >= least) {
-            NEW_SCRATCH(int64_t, face, set->count, error);
-            RETURN_IF_ERROR(faces_find(&input->boundary, set->count, set->facet, face, error));
-            for (int64_t f = 0; f < set->count; f++) {
-                if (face[f] >= 0) { /* else the condition's averages are an error */
-                    (*held)[face[f]] = true;
-                }
-            }
+            RETURN_IF_ERROR(faces_mark(&input->boundary, set->count, set->facet, *held, error));
         }
     }
     return STATUS_OK;
@@ -246,12 +240,10 @@ enum status assembly_penalty_modulus(const struct assembly *input, const struct 
                                      double *modulus, double *wave, struct error *error)
 {
     NEW_SCRATCH(bool, behind, input->cells.count, error);
-    NEW_SCRATCH(int64_t, face, set->count, error);
-    RETURN_IF_ERROR(faces_find(&input->boundary, set->count, set->facet, face, error));
-    for (int64_t f = 0; f < set->count; f++) {
-        if (face[f] >= 0) {
-            behind[input->boundary.cell[2 * face[f]]] = true;
-        }
+    NEW_SCRATCH(bool, marked, input->boundary.count, error);
+    RETURN_IF_ERROR(faces_mark(&input->boundary, set->count, set->facet, marked, error));
+    for (int64_t f = 0; f < input->boundary.count; f++) {
+        behind[input->boundary.cell[2 * f]] |= marked[f];
     }
     *modulus = *wave = 0.0;
     for (int64_t q = 0; q < input->point_count; q++) {
