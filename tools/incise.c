@@ -43,7 +43,6 @@ static const char usage[] =
 #include "groups/group_body.h"
 
 #include "approx/field/field.h"
-#include "base/vector.h"
 #include "io/files/surface.h"
 #include "stages/incise.h"
 

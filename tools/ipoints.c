@@ -48,8 +48,6 @@ static const char usage[] =
 #include "stage_options.h"
 #include "stages/stages.h"
 
-#include <string.h>
-
 /* The options of adaptive integration; shape functions not given by options are those of `mls`. */
 static struct adaptive_options parse_adaptive(const struct tool *tool, const struct mls *mls)
 {

@@ -6,7 +6,6 @@
 #include "base/vector.h"
 
 #include <math.h>
-#include <string.h>
 
 static void cut_body_free(struct cut_body *whole)
 {

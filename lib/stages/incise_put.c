@@ -7,7 +7,6 @@
 #include "stages/stages.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* ---- node sets ---- */

@@ -2,7 +2,6 @@
 
 #include "stages/views.h"
 
-#include "io/files/landmarks.h"
 #include "io/files/table.h"
 
 #include <string.h>

@@ -6,7 +6,6 @@
 #include "io/files/table.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum status model_add_curve(struct model *model, const struct scene_label *label,

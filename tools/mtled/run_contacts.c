@@ -1,14 +1,11 @@
 /* Notes and verdicts on contacts: where they begin, penetration, and sides that slide. */
 #include "mtled/run.h"
 
-#include "approx/field/field_compare.h"
 #include "base/round_off.h"
 #include "solid/equilibrium/statics.h"
 #include "solid/system/energy.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* A result of which more than this share of the forces is missing, because of the remaining penetration, is
  * refused; sliding sides are reported if they leave their surface by more than this share of how far they

@@ -3,7 +3,6 @@
 #include "approx/field/field_compare.h"
 #include "solid/dynamics/dynamics.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 /* What lets the energy drift. Contact between facets of one body begins or ends with a jump where they turn

@@ -7,7 +7,6 @@
 #include "solid/system/rigid_modes.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* The bodies of a model: parts that are connected by cells. */

@@ -3,7 +3,6 @@
 #include "base/vector.h"
 
 #include <math.h>
-#include <string.h>
 
 /* q = 2 r / R with r = A / s, R = a b c / (4 A), s half the perimeter. */
 static double triangle_quality(double area, const double *const x[3])

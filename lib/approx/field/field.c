@@ -9,7 +9,6 @@
 #include "base/vector.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* How far into its cell a node is looked for, as a share of the way to the middle. */

@@ -1,7 +1,6 @@
 #include "approx/field/motion.h"
 
 #include "approx/field/field.h"
-#include "approx/shape/shape.h"
 #include "approx/support/support.h"
 #include "base/memory.h"
 #include "base/vector.h"

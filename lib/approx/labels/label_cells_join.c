@@ -4,7 +4,6 @@
 #include "base/vector.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Number the groups of cells at a node that are connected by faces at it; returns the number of groups. */

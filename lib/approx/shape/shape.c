@@ -1,10 +1,8 @@
 #include "approx/shape/shape.h"
 
 #include "approx/cells/face_edges.h"
-#include "base/lists.h"
 #include "base/memory.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 static const int64_t chunk_points = 512;

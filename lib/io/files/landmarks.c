@@ -6,7 +6,6 @@
 #include "io/files/textfile.h"
 
 #include <float.h>
-#include <math.h>
 #include <string.h>
 
 static const size_t size_limit = (size_t)1 << 28;

@@ -2,7 +2,6 @@
  * says. */
 #include "io/image/text_header.h"
 
-#include <string.h>
 #include <strings.h>
 
 /* The fields of a header as they stand, in mm along left, back, up. */

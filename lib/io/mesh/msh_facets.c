@@ -4,7 +4,6 @@
 #include "io/mesh/msh_build.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 /* The faces (edges in 2D) of the cells, to be found by their nodes. */
 struct faces {

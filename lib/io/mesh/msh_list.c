@@ -1,6 +1,5 @@
 /* The nodes and elements of a mesh file, as they are read, and finding them by their tags. */
 #include "base/lists.h"
-#include "base/memory.h"
 #include "io/mesh/msh_private.h"
 
 #include <stdlib.h>

@@ -10,7 +10,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 
 /* Unstructured grids of VTK: an array of the cells tells the regions, arrays of the points the sets of tovtk.
  */

@@ -4,7 +4,6 @@
 #include "base/memory.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Constraint penalty, by the shear modulus over the size of a cell, as in Nitsche's method. From .0001 to 100

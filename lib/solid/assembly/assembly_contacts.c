@@ -7,7 +7,6 @@
 #include "solid/contact/friction.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 /* Penalty modulus by the shear modulus: the P-wave modulus at Poisson's ratio .49. */
 static const double penalty_factor = 50.0;

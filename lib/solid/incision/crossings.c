@@ -3,7 +3,6 @@
 #include "solid/incision/incision_private.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 /* New nodes stay so far from the ends of their edges. */
 static const double least_share = 0.01;

@@ -1,9 +1,6 @@
 #include "base/round_off.h"
 #include "solid/incision/incision_private.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 /* A node on a face of an earlier cut along which the blade goes, to this cosine, is on the blade within this
  * share of its longest edge: a cut goes on from its edge, although a deformed body, or a blade that has
  * moved, is off it a little. */

@@ -3,9 +3,6 @@
 
 #include "base/sets.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 /* Whether face i, with the next one, is opened: it is within the border, not all on it. */
 static bool is_opened(const struct cut *cut, int64_t i)
 {
