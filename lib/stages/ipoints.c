@@ -105,24 +105,17 @@ static enum status put_points(struct stream *stream, int dim, const char *rule,
     return stream_put(stream, "points.cell", TYPE_I4, count, 1, "", array_take(&points->cell), true, error);
 }
 
-static enum status put_face_points(struct stream *stream, const struct cells *cells,
-                                   const struct faces *faces, struct error *error)
-{
-    int64_t points = face_point_count(faces);
-    NEW_SCRATCH(double, x, points * cells->dim, error);
-    char attributes[64];
-    face_points(faces, cells->x, x);
-    return stream_put(stream, "facepoints.x", TYPE_F8, points, cells->dim,
-                      vector_attributes(cells->dim, "m", attributes), array_take(&x), true, error);
-}
-
 enum status stage_face_points(struct stream *stream, struct error *error)
 {
     struct cells cells;
     struct faces faces;
+    char attributes[64];
     RETURN_IF_ERROR(stream_cells(stream, true, &cells, error));
     RETURN_IF_ERROR(stream_faces(stream, &faces, error));
-    return put_face_points(stream, &cells, &faces, error);
+    NEW_SCRATCH(double, x, face_point_count(&faces) * cells.dim, error);
+    face_points(&faces, cells.x, x);
+    return stream_put(stream, "facepoints.x", TYPE_F8, face_point_count(&faces), cells.dim,
+                      vector_attributes(cells.dim, "m", attributes), array_take(&x), true, error);
 }
 
 static enum status put_faces(struct stream *stream, const struct cells *cells, bool boundary_only,
@@ -131,7 +124,6 @@ static enum status put_faces(struct stream *stream, const struct cells *cells, b
     int dim = cells->dim;
     FREED_BY(faces_free) struct faces faces = {0};
     RETURN_IF_ERROR(faces_build(cells, boundary_only, &faces, error));
-    const struct faces view = faces;
     int64_t count = faces.count;
     RETURN_IF_ERROR(
         stream_put(stream, "faces", TYPE_I4, count, dim, "", array_take(&faces.node), true, error));
@@ -141,7 +133,7 @@ static enum status put_faces(struct stream *stream, const struct cells *cells, b
         RETURN_IF_ERROR(stream_put(stream, "faces.edge", TYPE_I4, count, FACE_EDGES(dim), "",
                                    array_take(&faces.edge), true, error));
     }
-    return put_face_points(stream, cells, &view, error);
+    return stage_face_points(stream, error);
 }
 
 enum status stage_ipoints(struct stream *stream, const struct ipoints_options *options, int64_t *unresolved,

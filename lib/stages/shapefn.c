@@ -55,23 +55,13 @@ static enum status tabulate(struct stream *stream, const struct mls *mls, const 
     return STATUS_OK;
 }
 
-/* A table of `rows` rows as sections PREFIX.ptr, .idx and .phi; the stream takes the arrays. */
-static enum status put_table(struct stream *stream, const char *prefix, int64_t rows,
-                             struct shape_rows *table, struct error *error)
-{
-    int64_t pairs = table->ptr[rows];
-    RETURN_IF_ERROR(stream_put_member(stream, prefix, "ptr", TYPE_I8, rows + 1, 1, "", &table->ptr, error));
-    RETURN_IF_ERROR(stream_put_member(stream, prefix, "idx", TYPE_I4, pairs, 1, "", &table->idx, error));
-    return stream_put_member(stream, prefix, "phi", TYPE_F8, pairs, 1, "", &table->phi, error);
-}
-
 /* The values at the points of boundary faces, and for smoothed cells the rows of the edges. What lies at
  * the points of faces has served. */
 static enum status put_faces(struct stream *stream, const struct mls *mls, bool smoothed, struct error *error)
 {
     struct faces faces;
     struct tabulated of;
-    FREED_BY(shape_rows_free) struct shape_rows boundary = {0}, edges = {0};
+    FREED_BY(shape_rows_free) struct shape_rows edges = {0};
     RETURN_IF_ERROR(stream_faces(stream, &faces, error));
     RETURN_IF_ERROR(view_points(stream, "facepoints.x", "facepoint", &of, error));
     if (of.lists.count != face_point_count(&faces)) {
@@ -81,16 +71,18 @@ static enum status put_faces(struct stream *stream, const struct mls *mls, bool 
     RETURN_IF_ERROR(shape_table(mls, of.nodes, of.radius, &of.lists, of.x, of.section, phi, NULL, error));
     if (smoothed) {
         RETURN_IF_ERROR(shape_on_edges(&of.lists, phi, &faces, &edges, error));
-        RETURN_IF_ERROR(put_table(stream, "edge", face_row_count(&faces), &edges, error));
+        int64_t rows = face_row_count(&faces), pairs = edges.ptr[rows];
+        RETURN_IF_ERROR(
+            stream_put(stream, "edge.ptr", TYPE_I8, rows + 1, 1, "", array_take(&edges.ptr), true, error));
+        RETURN_IF_ERROR(
+            stream_put(stream, "edge.idx", TYPE_I4, pairs, 1, "", array_take(&edges.idx), true, error));
+        RETURN_IF_ERROR(
+            stream_put(stream, "edge.phi", TYPE_F8, pairs, 1, "", array_take(&edges.phi), true, error));
     }
     int64_t rows = face_boundary_points(&faces), pairs = of.lists.ptr[rows];
-    RETURN_IF_ERROR(NEW_ARRAY(&boundary.ptr, rows + 1, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&boundary.idx, pairs, error));
-    memcpy(boundary.ptr, of.lists.ptr, (size_t)(rows + 1) * sizeof *boundary.ptr);
-    memcpy(boundary.idx, of.lists.idx, (size_t)pairs * sizeof *boundary.idx);
-    RETURN_IF_ERROR(RESIZE_ARRAY(&phi, pairs, error));
-    boundary.phi = array_take(&phi);
-    RETURN_IF_ERROR(put_table(stream, "boundary", rows, &boundary, error));
+    RETURN_IF_ERROR(stream_put_copy(stream, "boundary.ptr", TYPE_I8, rows + 1, 1, "", of.lists.ptr, error));
+    RETURN_IF_ERROR(stream_put_copy(stream, "boundary.idx", TYPE_I4, pairs, 1, "", of.lists.idx, error));
+    RETURN_IF_ERROR(stream_put_copy(stream, "boundary.phi", TYPE_F8, pairs, 1, "", phi, error));
     for (int64_t s = stream->section_count - 1; s >= 0; s--) {
         if (strncmp(stream->sections[s].name, "facepoint", strlen("facepoint")) == 0) {
             stream_remove(stream, stream->sections[s].name);
