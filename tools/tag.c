@@ -94,11 +94,8 @@ static enum status take_name(const struct request *request, char **name, const c
     return *name != NULL ? STATUS_OK : fail_memory(error, "a name");
 }
 
-static const char *plural(enum group_kind kind)
-{
-    static const char *const plurals[] = {"facets", "nodes", "cells"};
-    return plurals[kind];
-}
+/* Facets, nodes, cells. */
+static const char *const plurals[GROUP_KINDS] = {"facets", "nodes", "cells"};
 
 static enum status make_group(const struct request *request, enum group_kind kind, struct error *error)
 {
@@ -124,7 +121,7 @@ static enum status make_group(const struct request *request, enum group_kind kin
         struct box box = box_of(body->cells.dim, body->cells.node_count, body->cells.x);
         char place[128];
         return fail(error, STATUS_INPUT, "chooses none of %jd %s; the body's box is %s", items->count,
-                    plural(kind), box_text(&box, place));
+                    plurals[kind], box_text(&box, place));
     }
     return group_put(body, kind, name, chosen, error);
 }

@@ -70,25 +70,21 @@ static enum status lattice_points(const struct cells *nodes, const int64_t n[3],
     return STATUS_OK;
 }
 
-/* radius[]: those recorded in the stream, unless options give others. */
-static enum status adaptive_radii(const struct stream *stream, const struct ipoints_options *options,
-                                  const struct cells *cells, double *radius, struct error *error)
-{
-    const struct section *recorded = stream_find(stream, "support.radius");
-    if (recorded == NULL || options->given_radius) {
-        return stage_radii(stream, &options->refinement.support, cells->node_count, cells->x, radius, error);
-    }
-    RETURN_IF_ERROR(stream_view(stream, "support.radius", &recorded, error));
-    memcpy(radius, recorded->data, (size_t)recorded->rows * sizeof *radius);
-    return STATUS_OK;
-}
-
+/* With the radii recorded in the stream, unless options give others. */
 static enum status adaptive_cell_points(const struct stream *stream, const struct ipoints_options *options,
                                         const struct cells *cells, struct adaptive_points *points,
                                         struct error *error)
 {
-    NEW_SCRATCH(double, radius, cells->node_count, error);
-    RETURN_IF_ERROR(adaptive_radii(stream, options, cells, radius, error));
+    const struct section *recorded = stream_find(stream, "support.radius");
+    NEW_SCRATCH(double, made, cells->node_count, error);
+    const double *radius = made;
+    if (recorded == NULL || options->given_radius) {
+        RETURN_IF_ERROR(
+            stage_radii(stream, &options->refinement.support, cells->node_count, cells->x, made, error));
+    } else {
+        RETURN_IF_ERROR(stream_view(stream, "support.radius", &recorded, error));
+        radius = recorded->data;
+    }
     return adaptive_points_build(&options->refinement, cells, radius, points, error);
 }
 

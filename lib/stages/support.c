@@ -9,34 +9,17 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Radii from the local spacing: of the cells if there are any, else of the nearest nodes. */
-static enum status local_radii(const struct stream *stream, const struct support_options *options,
-                               int64_t node_count, const double *x, double *radius, struct error *error)
+enum status stage_radii(const struct stream *stream, const struct support_options *options,
+                        int64_t node_count, const double *x, double *radius, struct error *error)
 {
     struct cells cells;
     NEW_SCRATCH(double, spacing, node_count, error);
     RETURN_IF_ERROR(stream_cells(stream, false, &cells, error));
-    if (cells.count > 0) {
-        RETURN_IF_ERROR(cells_node_spacing(&cells, spacing, error));
-    } else {
-        RETURN_IF_ERROR(nodes_spacing(options->mls.dim, node_count, x, spacing, error));
+    if (!(options->radius > 0.0)) { /* the local spacing: of the cells if there are any, else of the nodes */
+        RETURN_IF_ERROR(cells.count > 0 ? cells_node_spacing(&cells, spacing, error)
+                                        : nodes_spacing(options->mls.dim, node_count, x, spacing, error));
     }
     return support_radii(options, node_count, spacing, radius, error);
-}
-
-enum status stage_radii(const struct stream *stream, const struct support_options *options,
-                        int64_t node_count, const double *x, double *radius, struct error *error)
-{
-    return options->radius > 0.0 ? support_radii(options, node_count, NULL, radius, error)
-                                 : local_radii(stream, options, node_count, x, radius, error);
-}
-
-static enum status put_radii(struct stream *stream, const struct support_options *options, int64_t node_count,
-                             const double *x, struct error *error)
-{
-    NEW_SCRATCH(double, radius, node_count, error);
-    RETURN_IF_ERROR(stage_radii(stream, options, node_count, x, radius, error));
-    return stage_record(stream, &(struct field_shapes){NULL, *options, options->mls}, node_count, radius, error);
 }
 
 /* Points of one section in these cells, their lists PREFIX.ptr, .idx, .widen, and their name in the
@@ -108,7 +91,7 @@ static enum status places_of_face_points(const struct stream *stream, const stru
 }
 
 static enum status stage_lists(struct stream *stream, const struct support_options *options,
-                        struct support_report *report, struct error *error)
+                               struct support_report *report, struct error *error)
 {
     FREED_BY(support_space_free) struct support_space space = {0};
     const struct section *points, *facepoints;
@@ -156,7 +139,10 @@ enum status stage_support(struct stream *stream, const struct support_options *o
     if (cells.count == 0) {
         actual.visibility = VISIBILITY_DISTANCE;
     }
-    RETURN_IF_ERROR(put_radii(stream, &actual, cells.node_count, cells.x, error));
+    NEW_SCRATCH(double, radius, cells.node_count, error);
+    RETURN_IF_ERROR(stage_radii(stream, &actual, cells.node_count, cells.x, radius, error));
+    const struct field_shapes shapes = {NULL, actual, actual.mls};
+    RETURN_IF_ERROR(stage_record(stream, &shapes, cells.node_count, radius, error));
     return stage_lists(stream, &actual, report, error);
 }
 

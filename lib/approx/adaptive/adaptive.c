@@ -33,7 +33,6 @@ static void leaves_free(struct leaves *leaves)
 /* The input of the refinement. */
 struct refinement {
     const struct adaptive_options *options;
-    const struct cells *cells;
     struct support_space space;
     struct quadrature_rule rule;
     double *norm; /* |K| of each cell, by the rule on the whole cell */
@@ -97,7 +96,7 @@ static void sample_free(struct sample *sample)
 static enum status sample_leaves(const struct refinement *refinement, struct leaf *const *leaf, int64_t count,
                                  struct sample *sample, struct error *error)
 {
-    const struct cells *cells = refinement->cells;
+    const struct cells *cells = &refinement->space.cells;
     const struct mls *mls = &refinement->options->support.mls;
     int dim = cells->dim, per_rule = refinement->rule.points;
     sample->per_leaf = per_rule * (1 + children_of(dim));
@@ -172,7 +171,7 @@ static enum status measure(const struct refinement *refinement, const struct sam
                            double volume, double *norm, double *change, struct error *error)
 {
     const struct support_lists *lists = &sample->lists;
-    int dim = refinement->cells->dim, per_rule = refinement->rule.points;
+    int dim = refinement->space.cells.dim, per_rule = refinement->rule.points;
     int64_t first = leaf * sample->per_leaf, last = first + sample->per_leaf;
     int64_t pairs = lists->ptr[last] - lists->ptr[first];
     NEW_SCRATCH(int64_t, united, pairs, error);
@@ -207,8 +206,8 @@ static enum status measure_batch(struct refinement *refinement, struct leaf *con
     for (int64_t l = 0; l < count; l++) {
         struct error own;
         double norm = 0.0;
-        double volume =
-            ldexp(cell_volume(refinement->cells, leaf[l]->cell), -refinement->cells->dim * leaf[l]->level);
+        double volume = ldexp(cell_volume(&refinement->space.cells, leaf[l]->cell),
+                              -refinement->space.cells.dim * leaf[l]->level);
         note_failure(&failure, l, measure(refinement, &sample, l, volume, &norm, &leaf[l]->change, &own),
                      &own, error);
         if (leaf[l]->level == 0) {
@@ -290,9 +289,6 @@ static enum status mark_cell(const struct adaptive_options *options, struct leaf
 /* Replace the marked subcells by their children. */
 static enum status split(int dim, int64_t marked, struct leaves *leaves, struct error *error)
 {
-    if (marked == 0) {
-        return STATUS_OK;
-    }
     int children = children_of(dim);
     int64_t count = leaves->count + marked * (children - 1);
     struct leaf *next;
@@ -354,7 +350,7 @@ static enum status place_points(const struct refinement *refinement, const struc
                                 struct adaptive_points *points, struct error *error)
 {
     const struct quadrature_rule *rule = &refinement->rule;
-    int dim = refinement->cells->dim;
+    int dim = refinement->space.cells.dim;
     points->count = leaves->count * rule->points;
     if (points->count > INT32_MAX) {
         return fail(error, STATUS_INPUT,
@@ -368,7 +364,7 @@ static enum status place_points(const struct refinement *refinement, const struc
     for (int64_t l = 0; l < leaves->count; l++) {
         const struct leaf *leaf = &leaves->leaf[l];
         int64_t first = l * rule->points;
-        double volume = ldexp(cell_volume(refinement->cells, leaf->cell), -dim * leaf->level);
+        double volume = ldexp(cell_volume(&refinement->space.cells, leaf->cell), -dim * leaf->level);
         quadrature_positions(rule, dim, leaf->vertex, in_order, points->x + first * dim);
         for (int q = 0; q < rule->points; q++) {
             points->weight[first + q] = rule->weight[q] * volume;
@@ -381,7 +377,7 @@ static enum status place_points(const struct refinement *refinement, const struc
 enum status adaptive_points_build(const struct adaptive_options *options, const struct cells *cells,
                                   const double *radius, struct adaptive_points *points, struct error *error)
 {
-    FREED_BY(refinement_free) struct refinement refinement = {.options = options, .cells = cells};
+    FREED_BY(refinement_free) struct refinement refinement = {.options = options};
     FREED_BY(leaves_free) struct leaves leaves = {0};
     int64_t marked;
     *points = (struct adaptive_points){0};

@@ -112,15 +112,16 @@ static enum status check_columns(const char *path, int64_t line, const struct ta
                       most);
 }
 
-static enum status read_form(const char *path, const struct form *form, struct table *table,
-                             struct error *error)
+enum status table_read_open(const char *path, int least, int most, int open, int closed, struct table *table,
+                            struct error *error)
 {
+    const struct form form = {least, most, open, closed};
     FREED_BY(textfile_free) struct textfile file = {0};
     int64_t line = 1;
     *table = (struct table){0};
     if (landmarks_named(path)) {
         RETURN_IF_ERROR(landmarks_read(path, table, error));
-        RETURN_IF_ERROR(check_columns(path, table->line[0], table, (int)table->cols, form, error));
+        RETURN_IF_ERROR(check_columns(path, table->line[0], table, (int)table->cols, &form, error));
         return table_end_block(table, error);
     }
     RETURN_IF_ERROR(textfile_read(path, size_limit, &file, error));
@@ -130,9 +131,9 @@ static enum status read_form(const char *path, const struct form *form, struct t
         if (is_blank_line(at)) {
             RETURN_IF_ERROR(table_end_block(table, error));
         }
-        RETURN_IF_ERROR(read_row(path, line, at, form, row, &count, error));
+        RETURN_IF_ERROR(read_row(path, line, at, &form, row, &count, error));
         if (count > 0) {
-            RETURN_IF_ERROR(check_columns(path, line, table, count, form, error));
+            RETURN_IF_ERROR(check_columns(path, line, table, count, &form, error));
             table->cols = count;
             RETURN_IF_ERROR(table_append(table, row, line, NULL, error));
         }
@@ -145,13 +146,7 @@ static enum status read_form(const char *path, const struct form *form, struct t
 
 enum status table_read(const char *path, int least, int most, struct table *table, struct error *error)
 {
-    return read_form(path, &(struct form){.least = least, .most = most}, table, error);
-}
-
-enum status table_read_open(const char *path, int least, int most, int open, int closed, struct table *table,
-                            struct error *error)
-{
-    return read_form(path, &(struct form){least, most, open, closed}, table, error);
+    return table_read_open(path, least, most, 0, 0, table, error);
 }
 
 double table_unit(const char *path, double given)
