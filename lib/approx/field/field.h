@@ -78,8 +78,9 @@ void field_evaluate(int64_t count, const int64_t *ptr, const int32_t *idx, const
  * The map x + u(x) preserves orientation where det (I + grad u) > 0. For cells that are not flat, the linear
  * interpolant between the vertices decides. Across a flat cell of height t and edges of length h, the error
  * of its gradient is of the order of h^2 / t times the second derivative of u: it may be inverted where the
- * field only bends. These cells are therefore judged by the gradient of the field itself, at the points within
- * whose barycentric coordinates are positive multiples of 1/6: ten in a triangle, ten in a tetrahedron. */
+ * field only bends. These cells are therefore judged by the gradient of the field itself, at the points
+ * within whose barycentric coordinates are positive multiples of 1/6: ten in a triangle, ten in a
+ * tetrahedron. */
 enum { FIELD_TURNING_POINTS = 10 };
 
 /* least[count]: the least determinant at the points within each cell of cell[count]; NaN if u is not finite.

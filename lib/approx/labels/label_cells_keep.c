@@ -171,7 +171,8 @@ enum status label_cells_keep(const struct labels *labels, const struct label_cel
     int64_t count = mesh->cell_count;
     int32_t bodies = 0;
     FREED_BY(star_free) struct label_cells_star star = {0};
-    FREED_BY(keeping_free) struct label_cells_keeping keeping = {.mesh = mesh, .between = between, .cells = label_cells_view(mesh)};
+    FREED_BY(keeping_free)
+    struct label_cells_keeping keeping = {.mesh = mesh, .between = between, .cells = label_cells_view(mesh)};
     *kept = (struct label_cells_kept){0};
     RETURN_IF_ERROR(NEW_ARRAY(&kept->dropped, labels->count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&keeping.across, count * (dim + 1), error));

@@ -178,4 +178,3 @@ MUST_CHECK enum status label_cells_improve(const struct labels *labels,
                                            const struct label_cells_options *options,
                                            const struct label_cells_kept *kept, struct label_cells *mesh,
                                            struct error *error);
-

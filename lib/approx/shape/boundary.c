@@ -184,7 +184,7 @@ static enum status build(const struct face_table *table, const struct facet_set 
         averages->sample_ptr[part + 1] = averages->sample_ptr[part];
         for (; next < corner_count && corners[next].part == part; next++) {
             RETURN_IF_ERROR(add_corner(table, set, face_of, &corners[next], part, at_corner,
-                           node_lists == NULL ? &row : NULL, averages, error));
+                                       node_lists == NULL ? &row : NULL, averages, error));
         }
         averages->node[part] = node;
         double whole = averages->area[part];

@@ -42,14 +42,15 @@ static enum status tabulate(const struct tabulation *table, int64_t first, int64
                                       .widen = lists->widen[p],
                                       .neighbours = lists->idx + pair,
                                       .count = lists->ptr[p + 1] - pair};
-        RETURN_IF_ERROR(mls_evaluate(table->mls, &support, &work, phi + at, dphi != NULL ? dphi + at * dim : NULL,
-                         &verdict, error));
+        RETURN_IF_ERROR(mls_evaluate(table->mls, &support, &work, phi + at,
+                                     dphi != NULL ? dphi + at * dim : NULL, &verdict, error));
         if (verdict != MLS_GOOD) {
             char place[96];
             point_text(dim, support.x, place);
-            return fail(error, STATUS_VERDICT, "%s: row %lld at %s: %s of %s on %lld nodes: widen the support",
-                     table->what, (long long)p, place, mls_verdict_text(verdict),
-                     basis_names[table->mls->basis], (long long)support.count);
+            return fail(error, STATUS_VERDICT,
+                        "%s: row %lld at %s: %s of %s on %lld nodes: widen the support", table->what,
+                        (long long)p, place, mls_verdict_text(verdict), basis_names[table->mls->basis],
+                        (long long)support.count);
         }
     }
     return STATUS_OK;

@@ -114,4 +114,3 @@ void image_describe(struct image *image, const char *text);
 MUST_CHECK enum status image_bytes_read(int descriptor, bool any, struct image_bytes *file,
                                         struct error *error);
 void image_bytes_free(struct image_bytes *file);
-

@@ -160,7 +160,8 @@ static enum status add_penalties(struct prescription *p, struct error *error)
     area /= (double)set->count;
     p->penalties = true;
     p->layer = p->input->cells.dim == 2 ? area : sqrt(2.0 * area);
-    RETURN_IF_ERROR(assembly_penalty_modulus(p->input, set, constraint_penalty_factor, &p->modulus, &wave, error));
+    RETURN_IF_ERROR(
+        assembly_penalty_modulus(p->input, set, constraint_penalty_factor, &p->modulus, &wave, error));
     for (int64_t a = 0; a < points.count; a++) {
         RETURN_IF_ERROR(add_average(p, &points, a, error));
     }
@@ -258,7 +259,7 @@ static enum status add_condition(struct prescription *p, struct error *note, str
     FREED_BY(edge_paths_free) struct edge_paths paths = {0};
     if (condition->kind == CONDITION_TABLE) {
         RETURN_IF_ERROR(edge_paths_build(&p->input->cells, condition->row_count, 2 * dim, condition->rows,
-                             condition->unit, &paths, error));
+                                         condition->unit, &paths, error));
         p->fit = (struct scattered_fit){.dim = dim,
                                         .value_count = dim,
                                         .count = condition->row_count,
@@ -297,7 +298,8 @@ enum status assembly_add_conditions(const struct assembly *input, struct solid_s
      * it up to its rim. */
     for (int directions = 1; directions <= input->cells.dim; directions++) {
         for (int64_t i = 0; i < input->condition_count; i++) {
-            FREED_BY(prescription_free) struct prescription p = {.input = input,
+            FREED_BY(prescription_free)
+            struct prescription p = {.input = input,
                                      .condition = &input->conditions[i],
                                      .system = system,
                                      .nodal_constraints = &nodal_constraints,

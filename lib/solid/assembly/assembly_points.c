@@ -210,7 +210,8 @@ enum status assembly_add_points(const struct assembly *input, struct solid_syste
 {
     for (int64_t i = 0; i < input->condition_count; i++) {
         if (input->conditions[i].kind == CONDITION_POINTS) {
-            FREED_BY(point_condition_free) struct point_condition p = {.input = input,
+            FREED_BY(point_condition_free)
+            struct point_condition p = {.input = input,
                                         .condition = &input->conditions[i],
                                         .measured = &input->conditions[i].measured,
                                         .system = system,

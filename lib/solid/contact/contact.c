@@ -31,16 +31,6 @@ double contact_most_depth(const struct contact *contact, int64_t p)
     return CONTACT_MOST_DEPTH * contact_width(contact, p);
 }
 
-bool contact_is_through(const struct contact *contact)
-{
-    bool through = false;
-    for (int64_t p = 0; p < contact->count && contact->between == NULL && !through; p++) {
-        struct rigid_contact closest = rigid_closest(&contact->surface, contact->view[p].x, INFINITY);
-        through = closest.found && -closest.gap > contact_most_depth(contact, p);
-    }
-    return through;
-}
-
 double contact_round_off(const struct contact *contact, int64_t p)
 {
     return round_off * contact_width(contact, p);

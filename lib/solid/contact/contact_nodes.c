@@ -144,3 +144,13 @@ double contact_missing_work(const struct contact *contact)
     }
     return fabs(work);
 }
+
+bool contact_is_through(const struct contact *contact)
+{
+    bool through = false;
+    for (int64_t p = 0; p < contact->count && contact->between == NULL && !through; p++) {
+        struct rigid_contact closest = rigid_closest(&contact->surface, contact->view[p].x, INFINITY);
+        through = closest.found && -closest.gap > contact_most_depth(contact, p);
+    }
+    return through;
+}

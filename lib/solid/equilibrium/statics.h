@@ -51,8 +51,8 @@ struct statics_report {
     double move;  /* the largest displacement of a node, m, at least the tolerance times the largest of the
                    * run: the scale of error and penetration_allowed */
     bool lost;    /* something acts on the body, but moves it by no more than statics_round_off: error is 0 */
-    double penetration, penetration_allowed;    /* of contacts, m: see contact_miss */
-    double load;                                /* share of the load at u, 0..1 */
+    double penetration, penetration_allowed; /* of contacts, m: see contact_miss */
+    double load;                             /* share of the load at u, 0..1 */
     int64_t worst_node;     /* the farthest from equilibrium at the last estimate, the caller's index */
     int64_t inverted_point; /* the caller's index, STATICS_INVERTED */
     double least_jacobian;
