@@ -56,14 +56,25 @@ void newton_augment(struct newton *n)
     preconditioner_follow(&n->preconditioner, n->system);
 }
 
+/* The least eigenvalue by which the error is estimated, in units of the preconditioner's. */
+static double lowest_of(const struct newton *n)
+{
+    return isinf(n->lowest) ? NEWTON_LEAST_TOLD : fmin(1.0, fmax(n->lowest, NEWTON_LEAST_TOLD));
+}
+
+/* What round-off of positions admits of the estimated error. */
+static double admitted(const struct newton *n)
+{
+    return n->round_off / (lowest_of(n) * n->report->move);
+}
+
 void newton_estimate(struct newton *n)
 {
     struct statics_report *report = n->report;
     double square = newton_square(n, &n->at_u), move = newton_longest(n, n->u, NULL);
     n->largest_move = fmax(n->largest_move, move);
     report->move = fmax(move, n->options->tolerance * n->largest_move);
-    double lowest = isinf(n->lowest) ? NEWTON_LEAST_TOLD : fmin(1.0, fmax(n->lowest, NEWTON_LEAST_TOLD));
-    double error = newton_longest(n, n->scaled, &report->worst_node) / lowest;
+    double error = newton_longest(n, n->scaled, &report->worst_node) / lowest_of(n);
     bool at_rest = report->move <= n->round_off || !(square > 0.0);
     report->lost = at_rest && error > DBL_EPSILON * n->body_size;
     report->error = !isfinite(square) ? INFINITY : at_rest ? 0.0 : error / report->move;
@@ -97,9 +108,9 @@ static bool is_found(struct newton *n, bool vain)
     }
     if (vain) {
         bool hovers = system_has_touched(n->system) && !newton_held_by_friction(n);
-        most = fmax(most, hovers ? most_hovering : n->round_off / report->move);
+        most = fmax(most, hovers ? most_hovering : admitted(n));
     }
-    bool rounds = report->error <= (vain ? n->round_off / report->move : 0.0); /* and so do the pressures */
+    bool rounds = report->error <= (vain ? admitted(n) : 0.0); /* and so do the pressures */
     bool pressures = rounds || newton_has_pressures(n);
     bool contacts = !contacts_lack(n);
     report->penetration = system_contact_miss(n->system);

@@ -208,7 +208,8 @@ void newton_let_slip(struct newton *n)
  * between steps. */
 static double left_of_correction(const struct newton *n)
 {
-    double error = n->report->error, enough = fmax(error, 0.5 * n->options->tolerance / error);
+    double error = n->report->error, most = fmax(n->options->tolerance, n->round_off / n->report->move);
+    double enough = fmax(error, 0.5 * most / error);
     return error > 0.0 && !body_is_limited(&n->system->body) ? fmin(left, enough) : left;
 }
 
