@@ -7,7 +7,7 @@
 #include "solid/preconditioner/coarse_space.h"
 
 enum { NODES = 34000 }; /* worth three threads */
-enum { MOST_CENTRES = 64 };
+enum { MOST_GROUPS = 64 };
 
 struct cloud {
     struct coarse_space coarse;
@@ -46,18 +46,17 @@ static struct neighbours list_neighbours(int dim, int64_t nodes, const double *X
     return (struct neighbours){.count = nodes, .ptr = ptr, .idx = idx};
 }
 
-static struct cloud make_cloud(int dim, int64_t node_count, int64_t centre_count)
+static struct cloud make_cloud(int dim, int64_t node_count, int64_t group_count)
 {
     struct cloud cloud = {.size = node_count * dim};
-    struct random random = {(uint64_t)(17 * dim + centre_count)};
+    struct random random = {(uint64_t)(17 * dim + group_count)};
     cloud.X = numbers(cloud.size, -0.1, 0.1, &random);
     for (int64_t n = 0; n < node_count; n++) {
         cloud.X[n * dim] += 5.0 * cloud.X[n * dim + 1]; /* slender, so that some shares vanish */
     }
     cloud.neighbours = list_neighbours(dim, node_count, cloud.X);
-    GOOD(
-        coarse_space_build(dim, node_count, cloud.X, &cloud.neighbours, centre_count, &cloud.coarse, &error));
-    assert_int_equal(cloud.coarse.count, centre_count * (dim + 1));
+    GOOD(coarse_space_build(dim, node_count, cloud.X, &cloud.neighbours, group_count, &cloud.coarse, &error));
+    assert_int_equal(cloud.coarse.count, group_count * (dim + 1));
     cloud.v = numbers(cloud.size, -1.0, 1.0, &random);
     cloud.amount = numbers(cloud.coarse.count * dim, -1.0, 1.0, &random);
     return cloud;
@@ -76,10 +75,10 @@ static void sum_plainly(const struct cloud *cloud, double *amount, double *u)
     double value[4];
     for (int64_t n = 0; n < coarse->node_count; n++) {
         for (int64_t i = coarse->shares.ptr[n]; i < coarse->shares.ptr[n + 1]; i++) {
-            int32_t centre = coarse->shares.idx[i];
-            coarse_space_values(coarse, n, centre, coarse->shares.value[i], value);
+            int32_t group = coarse->shares.idx[i];
+            coarse_space_values(coarse, n, group, coarse->shares.value[i], value);
             for (int64_t k = 0; k < (dim + 1) * dim; k++) {
-                int64_t at = centre * (dim + 1) * dim + k;
+                int64_t at = group * (dim + 1) * dim + k;
                 amount[at] += value[k / dim] * cloud->v[n * dim + k % dim];
                 u[n * dim + k % dim] += value[k / dim] * cloud->amount[at];
             }
@@ -89,8 +88,8 @@ static void sum_plainly(const struct cloud *cloud, double *amount, double *u)
 
 TEST_IN_EACH_DIM(plain_sums)
 {
-    for (int64_t centres = 1; centres <= MOST_CENTRES; centres += 7) {
-        FREED_BY(release) struct cloud cloud = make_cloud(dim, NODES, centres);
+    for (int64_t groups = 1; groups <= MOST_GROUPS; groups += 7) {
+        FREED_BY(release) struct cloud cloud = make_cloud(dim, NODES, groups);
         int64_t size = cloud.coarse.count * dim;
         double *amount = zeros(size, sizeof *amount), *expected = zeros(size, sizeof *expected);
         double *u = zeros(cloud.size, sizeof *u), *field = zeros(cloud.size, sizeof *field);
@@ -106,7 +105,7 @@ TEST_IN_EACH_DIM(plain_sums)
 TEST_IN_EACH_DIM(same_bits)
 {
     int before = omp_get_max_threads();
-    FREED_BY(release) struct cloud cloud = make_cloud(dim, NODES, MOST_CENTRES);
+    FREED_BY(release) struct cloud cloud = make_cloud(dim, NODES, MOST_GROUPS);
     int64_t size = cloud.coarse.count * dim;
     double *amounts[3], *u[3];
     for (int i = 0; i < 3; i++) {
@@ -121,14 +120,14 @@ TEST_IN_EACH_DIM(same_bits)
     omp_set_num_threads(before);
 }
 
-/* The shares of all centres make the constant field, and with the places of the centres the coordinates. */
+/* The shares of all groups make the constant field, and with the places of the groups the coordinates. */
 TEST_IN_EACH_DIM(linear_fields)
 {
     FREED_BY(release) struct cloud cloud = make_cloud(dim, 500, 6);
     const struct coarse_space *coarse = &cloud.coarse;
     double *u = zeros(cloud.size, sizeof *u);
     memset(cloud.amount, 0, (size_t)(coarse->count * dim) * sizeof *cloud.amount);
-    for (int c = 0; c < coarse->centre_count; c++) {
+    for (int c = 0; c < coarse->group_count; c++) {
         for (int a = 0; a < dim; a++) {
             int64_t first = (int64_t)c * (dim + 1);
             cloud.amount[first * dim + a] = 1.0 + coarse->centre[c * dim + a];
@@ -141,11 +140,11 @@ TEST_IN_EACH_DIM(linear_fields)
     }
 }
 
-static double share_at(const struct coarse_space *coarse, int64_t node, int32_t centre)
+static double share_at(const struct coarse_space *coarse, int64_t node, int32_t group)
 {
     double share = 0.0;
     for (int64_t i = coarse->shares.ptr[node]; i < coarse->shares.ptr[node + 1]; i++) {
-        share += coarse->shares.idx[i] == centre ? coarse->shares.value[i] : 0.0;
+        share += coarse->shares.idx[i] == group ? coarse->shares.value[i] : 0.0;
     }
     return share;
 }
@@ -199,10 +198,10 @@ TEST(slit)
     for (int64_t runs = 1; runs <= 8; runs++) {
         FREED_BY(coarse_space_free) struct coarse_space coarse = {0};
         GOOD(coarse_space_build(2, ALL, X, &neighbours, runs, &coarse, &error));
-        assert_true(coarse.centre_count >= runs - 1 && coarse.centre_count <= 2 * runs);
+        assert_true(coarse.group_count >= runs - 1 && coarse.group_count <= 2 * runs);
         for (int64_t n = 0; n < ALL; n++) {
             double sum = 0.0;
-            for (int c = 0; c < coarse.centre_count; c++) {
+            for (int c = 0; c < coarse.group_count; c++) {
                 sum += share_at(&coarse, n, c);
                 assert_true(runs == 1 || share_at(&coarse, 0, c) * share_at(&coarse, RING - 1, c) == 0.0);
             }
@@ -229,7 +228,7 @@ TEST(neighbours_in_one_direction)
     for (int runs = 1; runs < 8; runs += 3) {
         FREED_BY(coarse_space_free) struct coarse_space coarse = {0};
         GOOD(coarse_space_build(2, ALL, X, &neighbours, runs, &coarse, &error));
-        assert_int_equal(coarse.centre_count, runs);
+        assert_int_equal(coarse.group_count, runs);
         for (int64_t n = 0; n < ALL; n++) {
             double sum = 0.0;
             for (int c = 0; c < runs; c++) {

@@ -1,7 +1,6 @@
 /* Notes and verdicts on contacts: where they begin, penetration, and sides that slide. */
 #include "mtled/run.h"
 
-#include "base/round_off.h"
 #include "solid/equilibrium/statics.h"
 #include "solid/system/energy.h"
 

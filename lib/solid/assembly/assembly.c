@@ -24,7 +24,9 @@ static enum status find_junctions(const struct assembly *input, int kinds, int l
     return boundary_find_junctions(&input->face_table, kinds, held, constrained, *junction, error);
 }
 
-/* Of several nodes of a cell that which has the fewest cells so far. */
+/* (*part)[cells.count], to be freed: of cells that have a node on a junction of prescribed and free boundary
+ * within a smooth side the number of one of these nodes; -1: of others. Of several nodes of a cell it is that
+ * which has the fewest cells so far. */
 static enum status assembly_junction_cells(const struct assembly *input, int32_t **part, struct error *error)
 {
     const struct cells *cells = &input->cells;
@@ -47,8 +49,10 @@ static enum status assembly_junction_cells(const struct assembly *input, int32_t
     return STATUS_OK;
 }
 
-/* An edge between a clamped side and one that slides is not singular: it may be at a plane of symmetry. A
- * side that may come into contact counts as free: the treatment of edges does not change a uniform pressure.
+/* (*at_edge)[node_count], to be freed: the nodes at edges between clamped and free sides, and at re-entrant
+ * edges (2D: corners); NULL: none. An edge between a clamped side and one that slides is not singular: it may
+ * be at a plane of symmetry. A side that may come into contact counts as free: the treatment of edges does
+ * not change a uniform pressure.
  */
 static enum status assembly_edge_nodes(const struct assembly *input, bool **at_edge, struct error *error)
 {

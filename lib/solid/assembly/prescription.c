@@ -10,8 +10,7 @@
 #include <string.h>
 
 /* Shares of the largest value that either condition prescribes: values further apart than largest_jump are an
- * error. Values below least_size of the body's size count as that
- * size. */
+ * error. Values below least_size of the body's size count as that size. */
 static const double largest_jump = 0.1, least_size = 1e-6;
 
 void nodal_constraints_free(struct nodal_constraints *nodal_constraints)

@@ -42,7 +42,7 @@ struct newton {
     double usual;   /* products by which the residual falls to 1/e, the fewest since the preconditioner was
                        made, */
     double excess;  /* the products that were more than these, since then, */
-    int64_t cost;   /* and the evaluations that making it took */
+    int64_t cost;   /* and one more than the evaluations that making it took */
     double square;  /* r . M^-1 r at the start of the last correction */
     double lowest;  /* least eigenvalue of M^-1 K, from above; INFINITY: not known at this load */
     bool slides;    /* a contact has friction: every increment of the load ends in an equilibrium */
@@ -140,8 +140,8 @@ bool newton_held_by_friction(const struct newton *n);
 
 /* ---- newton_ends.c ---- */
 
-/* Let the multipliers of nodal pressures and contacts advance by what was evaluated at u, and evaluate it
- * with the new ones. */
+/* Let the multipliers of nodal pressures and contacts advance by what was evaluated at u, and take the
+ * forces with the new ones. */
 void newton_augment(struct newton *n);
 
 /* Whether the pressures are those of u, as far as an equilibrium needs. */

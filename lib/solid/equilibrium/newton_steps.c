@@ -229,6 +229,15 @@ static bool solve(struct newton *n)
     return newton_solve_model(n, 0.0, left, n->radius);
 }
 
+/* After what was tried: the forces at u, and yields of friction by the pressures there. */
+static void stay(struct newton *n)
+{
+    (void)newton_evaluate(n, n->u, &n->at_u);
+    if (n->slides) {
+        system_accept(n->system);
+    }
+}
+
 bool newton_correct(struct newton *n)
 {
     double lowest = n->lowest;
@@ -239,6 +248,7 @@ bool newton_correct(struct newton *n)
     bool whole = solve(n);
     n->length = newton_longest(n, n->step, &n->report->worst_node);
     if (n->length == 0.0) {
+        stay(n);
         return true;
     }
     take_multipliers(n);
@@ -252,10 +262,7 @@ bool newton_correct(struct newton *n)
     while (!try_step(n)) {
         if (!(n->length > least)) {
             n->lowest = lowest; /* that of a step that goes nowhere is one of round-off */
-            (void)newton_evaluate(n, n->u, &n->at_u);
-            if (n->slides) { /* yields by the pressures at u */
-                system_accept(n->system);
-            }
+            stay(n);
             return n->report->error <= n->options->tolerance; /* u needs no step, but perhaps pressures */
         }
         shorten(n, 0.5);

@@ -8,37 +8,37 @@
 enum status coarse_rows_begin(const struct coarse_space *coarse, struct coarse_rows *rows,
                               struct error *error)
 {
-    int64_t centres = coarse->centre_count;
+    int64_t groups = coarse->group_count;
     *rows = (struct coarse_rows){.coarse = coarse};
-    RETURN_IF_ERROR(NEW_ARRAY(&rows->centre, centres, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&rows->place, centres, error));
-    memset(rows->place, -1, (size_t)centres * sizeof *rows->place);
-    return NEW_ARRAY(&rows->value, centres, error);
+    RETURN_IF_ERROR(NEW_ARRAY(&rows->group, groups, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&rows->place, groups, error));
+    memset(rows->place, -1, (size_t)groups * sizeof *rows->place);
+    return NEW_ARRAY(&rows->value, groups, error);
 }
 
 void coarse_rows_free(struct coarse_rows *rows)
 {
-    FREE_ALL(rows->centre, rows->place, rows->value);
+    FREE_ALL(rows->group, rows->place, rows->value);
     *rows = (struct coarse_rows){0};
 }
 
 void coarse_rows_clear(struct coarse_rows *rows)
 {
     for (int64_t i = 0; i < rows->count; i++) {
-        rows->place[rows->centre[i]] = -1;
+        rows->place[rows->group[i]] = -1;
     }
     rows->count = 0;
 }
 
-/* The values of a centre, zero at first. */
-static double (*values_of(struct coarse_rows *rows, int32_t centre))[COARSE_MOST_NUMBERS]
+/* The values of a group, zero at first. */
+static double (*values_of(struct coarse_rows *rows, int32_t group))[COARSE_MOST_NUMBERS]
 {
-    if (rows->place[centre] < 0) {
-        rows->place[centre] = (int32_t)rows->count;
-        rows->centre[rows->count] = centre;
+    if (rows->place[group] < 0) {
+        rows->place[group] = (int32_t)rows->count;
+        rows->group[rows->count] = group;
         memset(rows->value[rows->count++], 0, sizeof *rows->value);
     }
-    return rows->value[rows->place[centre]];
+    return rows->value[rows->place[group]];
 }
 
 /* The dimension is known when compiling, here and below. */
@@ -77,7 +77,7 @@ void coarse_rows_add_average(struct coarse_rows *rows, const struct average *ave
     }
 }
 
-/* The block of a centre, above, and another one. */
+/* The block of a group, above, and another one. */
 static double *block_of(const struct coarse_space *coarse, int numbers, int32_t above, int32_t below,
                         double *matrix)
 {
@@ -90,11 +90,11 @@ KERNEL_INLINE void square(const struct coarse_rows *rows, int dim, int row, doub
     int64_t size = rows->coarse->count * dim;
     for (int64_t s = 0; s < rows->count; s++) {
         for (int64_t t = 0; t < rows->count; t++) {
-            if (rows->centre[t] > rows->centre[s]) {
+            if (rows->group[t] > rows->group[s]) {
                 continue;
             }
             const double *upper = rows->value[s][row], *lower = rows->value[t][row];
-            double *to = block_of(rows->coarse, numbers, rows->centre[s], rows->centre[t], matrix);
+            double *to = block_of(rows->coarse, numbers, rows->group[s], rows->group[t], matrix);
             for (int i = 0; i < numbers; i++, to += size) {
                 double scaled = factor * upper[i];
                 for (int k = 0; k < numbers; k++) {
@@ -120,12 +120,12 @@ KERNEL_INLINE void multiply(const struct coarse_rows *rows, int dim, int64_t nod
     int numbers = (dim + 1) * dim;
     int64_t size = coarse->count * dim;
     for (int64_t i = coarse->shares.ptr[node]; i < coarse->shares.ptr[node + 1]; i++) {
-        int32_t centre = coarse->shares.idx[i];
+        int32_t group = coarse->shares.idx[i];
         double value[4];
-        coarse_space_values(coarse, node, centre, coarse->shares.value[i], value);
+        coarse_space_values(coarse, node, group, coarse->shares.value[i], value);
         for (int64_t t = 0; t < rows->count; t++) {
-            double *to = block_of(coarse, numbers, centre, rows->centre[t], matrix);
-            for (int k = 0; k < numbers && rows->centre[t] <= centre; k++, to += size) {
+            double *to = block_of(coarse, numbers, group, rows->group[t], matrix);
+            for (int k = 0; k < numbers && rows->group[t] <= group; k++, to += size) {
                 const double *product = rows->value[t][k % dim];
                 for (int j = 0; j < numbers; j++) {
                     to[j] += value[k / dim] * product[j];

@@ -6,14 +6,14 @@
 #include "solid/preconditioner/coarse_space.h"
 
 enum { COARSE_MOST_ROWS = 4 };     /* functionals at once */
-enum { COARSE_MOST_NUMBERS = 12 }; /* fields of a centre times directions */
+enum { COARSE_MOST_NUMBERS = 12 }; /* fields of a group times directions */
 
 struct coarse_rows {
     const struct coarse_space *coarse; /* the caller's */
-    int64_t count;                     /* centres near: where they are not zero */
-    int32_t *centre;                   /* centre_count: these, */
-    int32_t *place;                    /* centre_count: where a centre is among these, or -1 */
-    double (*value)[COARSE_MOST_ROWS][COARSE_MOST_NUMBERS]; /* centre_count */
+    int64_t count;                     /* groups near: where they are not zero */
+    int32_t *group;                    /* group_count: these, */
+    int32_t *place;                    /* group_count: where a group is among these, or -1 */
+    double (*value)[COARSE_MOST_ROWS][COARSE_MOST_NUMBERS]; /* group_count */
 };
 
 /* All are zero. Errors: STATUS_SYSTEM (memory). */

@@ -98,7 +98,9 @@ static enum status place_centres(struct coarse_space *coarse, const struct group
     NEW_SCRATCH(int64_t, size, groups->count, error);
     RETURN_IF_ERROR(NEW_ARRAY(&coarse->centre, groups->count * dim, error));
     for (int64_t n = 0; n < coarse->node_count; n++) {
-        size[groups->group[n] >= 0 ? groups->group[n] : 0] += groups->group[n] >= 0;
+        if (groups->group[n] >= 0) {
+            size[groups->group[n]]++;
+        }
     }
     for (int64_t n = 0; n < coarse->node_count; n++) {
         int64_t c = groups->group[n];
@@ -155,7 +157,7 @@ static enum status share_unity(struct coarse_space *coarse, const struct neighbo
         }
         shares->ptr[n + 1] = at;
     }
-    return sparse_transpose(shares, &coarse->of_centre, error);
+    return sparse_transpose(shares, &coarse->of_group, error);
 }
 
 enum status coarse_space_build(int dim, int64_t node_count, const double *X,
@@ -166,7 +168,7 @@ enum status coarse_space_build(int dim, int64_t node_count, const double *X,
     *coarse = (struct coarse_space){.dim = dim, .node_count = node_count, .X = X};
     if (runs > 0) {
         RETURN_IF_ERROR(group_nodes(dim, node_count, X, neighbours, runs, &groups, error));
-        coarse->centre_count = groups.count;
+        coarse->group_count = groups.count;
         coarse->count = groups.count * (dim + 1);
         RETURN_IF_ERROR(place_centres(coarse, &groups, error));
         RETURN_IF_ERROR(share_unity(coarse, neighbours, &groups, error));
@@ -177,22 +179,22 @@ enum status coarse_space_build(int dim, int64_t node_count, const double *X,
 void coarse_space_free(struct coarse_space *coarse)
 {
     sparse_free(&coarse->shares);
-    sparse_free(&coarse->of_centre);
+    sparse_free(&coarse->of_group);
     free(coarse->centre);
     *coarse = (struct coarse_space){0};
 }
 
-/* amount[(dim + 1) * dim] of centre c. The dimension is known when compiling, here and below. */
+/* amount[(dim + 1) * dim] of group c. The dimension is known when compiling, here and below. */
 KERNEL_INLINE void collect(const struct coarse_space *coarse, int dim, int64_t c, const double *v,
                            double *amount)
 {
-    const struct sparse *of_centre = &coarse->of_centre;
+    const struct sparse *of_group = &coarse->of_group;
     double sum[4][3] = {{0.0}}, value[4];
     const double *place = coarse->centre + c * dim;
-    for (int64_t i = of_centre->ptr[c]; i < of_centre->ptr[c + 1]; i++) {
-        const double *X = coarse->X + (int64_t)of_centre->idx[i] * dim;
-        const double *at = v + (int64_t)of_centre->idx[i] * dim;
-        value[0] = of_centre->value[i];
+    for (int64_t i = of_group->ptr[c]; i < of_group->ptr[c + 1]; i++) {
+        const double *X = coarse->X + (int64_t)of_group->idx[i] * dim;
+        const double *at = v + (int64_t)of_group->idx[i] * dim;
+        value[0] = of_group->value[i];
         for (int a = 0; a < dim; a++) {
             value[a + 1] = value[0] * (X[a] - place[a]);
         }
@@ -236,8 +238,8 @@ KERNEL_INLINE void add(const struct coarse_space *coarse, int dim, int64_t n, co
     }
 }
 
-ALL_SETS static void collect_centre(const struct coarse_space *coarse, int64_t c, const double *v,
-                                    double *amount)
+ALL_SETS static void collect_group(const struct coarse_space *coarse, int64_t c, const double *v,
+                                   double *amount)
 {
     if (coarse->dim == 2) {
         collect(coarse, 2, c, v, amount);
@@ -268,8 +270,8 @@ void coarse_space_restrict(const struct coarse_space *coarse, const double *v, d
 {
     int64_t numbers = (coarse->dim + 1) * coarse->dim;
 #pragma omp parallel for schedule(dynamic, 1) num_threads(chunks_of_shares(coarse, 1).threads)
-    for (int64_t c = 0; c < coarse->centre_count; c++) {
-        collect_centre(coarse, c, v, amount + c * numbers);
+    for (int64_t c = 0; c < coarse->group_count; c++) {
+        collect_group(coarse, c, v, amount + c * numbers);
     }
 }
 

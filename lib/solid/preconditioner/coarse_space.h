@@ -19,11 +19,11 @@ struct coarse_space {
     int dim;
     int64_t node_count;
     const double *X; /* node_count * dim, m; the caller's */
-    int64_t centre_count, count;
-    double *centre;          /* centre_count * dim, the mean of each group's nodes, m */
-    double radius;           /* within which a group has shares, m */
-    struct sparse shares;    /* a row for each node: groups, ascending, and their shares, of sum 1; or none */
-    struct sparse of_centre; /* the transpose */
+    int64_t group_count, count;
+    double *centre;         /* group_count * dim, the mean of each group's nodes, m */
+    double radius;          /* within which a group has shares, m */
+    struct sparse shares;   /* a row for each node: groups, ascending, and their shares, of sum 1; or none */
+    struct sparse of_group; /* the transpose */
 };
 
 /* Fields of groups of nodes; none for 0. So many runs of nodes that are near each other are a group each
@@ -35,14 +35,14 @@ MUST_CHECK enum status coarse_space_build(int dim, int64_t node_count, const dou
 void coarse_space_free(struct coarse_space *coarse);
 
 /* value[dim + 1]: the fields at a node of a group that has this share of it. */
-static inline void coarse_space_values(const struct coarse_space *coarse, int64_t node, int64_t centre,
+static inline void coarse_space_values(const struct coarse_space *coarse, int64_t node, int64_t group,
                                        double share, double *value)
 {
     int dim = coarse->dim;
     value[0] = share;
     for (int a = 0; a < dim; a++) {
         value[a + 1] =
-            share * ((coarse->X[node * dim + a] - coarse->centre[centre * dim + a]) / coarse->radius);
+            share * ((coarse->X[node * dim + a] - coarse->centre[group * dim + a]) / coarse->radius);
     }
 }
 

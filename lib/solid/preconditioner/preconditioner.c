@@ -50,8 +50,8 @@ static enum status leave_out_held(const struct solid_system *system, struct coar
             coarse->shares.value[i] = 0.0;
         }
     }
-    sparse_free(&coarse->of_centre);
-    return coarse->count > 0 ? sparse_transpose(&coarse->shares, &coarse->of_centre, error) : STATUS_OK;
+    sparse_free(&coarse->of_group);
+    return coarse->count > 0 ? sparse_transpose(&coarse->shares, &coarse->of_group, error) : STATUS_OK;
 }
 
 enum status preconditioner_build(struct solid_system *system, bool coarse, struct preconditioner *p,
