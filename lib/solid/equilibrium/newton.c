@@ -118,8 +118,8 @@ static enum status begin(struct newton *n, struct error *error)
     system_load_factors(system, n->load);
     system_measure_contacts(system, n->u, true);
     system_accept(system);
-    (void)newton_evaluate(n, n->u, &n->at_u);
     if (n->options->frame != NULL && n->options->frames > 0 && !n->options->in_time) {
+        (void)newton_evaluate(n, n->u, &n->at_u);
         n->options->frame(n->options->context, 0, 0.0, n->u);
     }
     constraint_project(&n->preconditioner.constraint, system->factor, n->u);

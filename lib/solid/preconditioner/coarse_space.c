@@ -14,12 +14,12 @@
 enum { SHARES_FOR_THREAD = 20000 }; /* see chunks_of */
 
 /* group[]: of each node, or -1 where a body is too small for one; and how many there are. */
-struct groups {
+struct node_groups {
     int32_t *group;
     int64_t count;
 };
 
-static void groups_free(struct groups *groups)
+static void groups_free(struct node_groups *groups)
 {
     free(groups->group);
 }
@@ -72,7 +72,7 @@ static bool join_neighbours(const struct neighbours *neighbours, int64_t nodes, 
 
 /* A part with half of a run's nodes is a group; of smaller ones there would be too many. */
 static enum status group_nodes(int dim, int64_t nodes, const double *X, const struct neighbours *neighbours,
-                               int64_t runs, struct groups *groups, struct error *error)
+                               int64_t runs, struct node_groups *groups, struct error *error)
 {
     NEW_SCRATCH(int32_t, part, nodes, error);
     NEW_SCRATCH(int64_t, size, nodes, error);
@@ -91,7 +91,7 @@ static enum status group_nodes(int dim, int64_t nodes, const double *X, const st
 }
 
 /* The mean of the nodes of each group. */
-static enum status place_centres(struct coarse_space *coarse, const struct groups *groups,
+static enum status place_centres(struct coarse_space *coarse, const struct node_groups *groups,
                                  struct error *error)
 {
     int dim = coarse->dim;
@@ -113,7 +113,7 @@ static enum status place_centres(struct coarse_space *coarse, const struct group
 
 /* sum[count]: the weights of the groups that node n and its neighbours are in; returns the sum of all. */
 static double weigh_groups(const struct coarse_space *coarse, const struct neighbours *neighbours, int64_t n,
-                           const struct groups *groups, double *sum)
+                           const struct node_groups *groups, double *sum)
 {
     const double *x = coarse->X + n * coarse->dim;
     double farthest2 = 0.0, all = 0.0;
@@ -136,7 +136,7 @@ static double weigh_groups(const struct coarse_space *coarse, const struct neigh
 }
 
 static enum status share_unity(struct coarse_space *coarse, const struct neighbours *neighbours,
-                               const struct groups *groups, struct error *error)
+                               const struct node_groups *groups, struct error *error)
 {
     struct sparse *shares = &coarse->shares;
     int64_t at = 0, room = 0, values = 0;
@@ -164,7 +164,7 @@ enum status coarse_space_build(int dim, int64_t node_count, const double *X,
                                const struct neighbours *neighbours, int64_t runs, struct coarse_space *coarse,
                                struct error *error)
 {
-    FREED_BY(groups_free) struct groups groups = {0};
+    FREED_BY(groups_free) struct node_groups groups = {0};
     *coarse = (struct coarse_space){.dim = dim, .node_count = node_count, .X = X};
     if (runs > 0) {
         RETURN_IF_ERROR(group_nodes(dim, node_count, X, neighbours, runs, &groups, error));
