@@ -195,6 +195,26 @@ immersed() {
         END { print sqrt(worst) / (0.05 * -s); exit !(NR == 125 && worst < (1e-4 * 0.05 * s)^2) }'
 }
 
+@test "a volume that grows by half, nearly incompressible: the closed form, by each volumetric energy" {
+    cloud -d 3 -k jittered --jitter 0.2 -n 5 --box 0,0.1,0,0.1,0,0.1 | shapefn > cube.mts 2> note
+    block quasi-static | sed 's/dim = 2/dim = 3/; s/^nu = .*/nu = 0.49/' > head
+    # P of the stretch l = 1.15, of E = 3000 Pa: kappa (J - 1) l^2; mu (l - 1 / l) + lambda ln J / l
+    while read -r model law; do
+        { sed "s/^E = /model = $model\nE = /" head; for at in min max; do for side in x y z; do
+            printf '[displacement %s]\nfacets = %s\nnormal = %s\n' $side$at $side$at $([ $at = min ] && echo 0 || echo 0.015); done; done
+            printf '[output]\nreactions = yes\n[solver]\ntolerance = 1e-7\n'; } > grown.scene
+        mtled -q grown.scene cube.mts > u.dat
+        paste -d ' ' <(rows nodes.x u.dat) <(rows u u.dat) | awk '{ for (a = 1; a <= 3; a++) { d = $(a + 3) - 0.15 * $a; worst = d * d > worst ? d * d : worst } }
+            END { print sqrt(worst); exit !(NR == 125 && worst < 1e-9 ^ 2) }'
+        rows reactions u.dat | awk -v law="$law" 'NR == 4 { l = 1.15; mu = 1500 / 1.49; J = l ^ 3
+            P = law == "linear" ? 50000 * (J - 1) * l * l : mu * (l - 1 / l) + 49 * mu * log(J) / l
+            print $1, P / 100; exit !(($1 / P * 100 - 1) ^ 2 < 1e-12) }'
+    done << 'END'
+neo-hookean linear
+neo-hookean-log logarithmic
+END
+}
+
 @test "groups that are not there, surfaces that are none: the line of the section" {
     mv held.scene block.scene
     { cat block.scene; printf '%b\n' '[traction a]\nfacets = ymax\ncomponents = 0, 1\ncurve = smooth' '[pressure b]\nfacets = xmax\nvalue = 1\ncurve = smooth' \

@@ -160,11 +160,14 @@ TEST_IN_EACH_DIM(edges)
     struct random random = {5};
     FREED_BY(sample_free) struct sample sample = make_sample(dim, true, 5);
     SCRATCH bool *at_edge = edge_nodes(&sample);
-    struct setup one = one_material(MATERIAL_NEO_HOOKEAN, true), three = three_materials(true);
-    one.faces = three.faces = true;
-    one.at_edge = three.at_edge = at_edge;
+    struct setup one = one_material(MATERIAL_NEO_HOOKEAN, true), three = three_materials(true),
+                 other = one_material(law_find("neo-hookean-log"), true);
+    one.faces = three.faces = other.faces = true;
+    one.at_edge = three.at_edge = other.at_edge = at_edge;
     three.group = (int32_t[]){0, 0, 1};
-    FREED_BY(body_free) struct body body = make_body(&sample, &one), mixed = make_body(&sample, &three);
+    FREED_BY(body_free)
+    struct body body = make_body(&sample, &one),
+                mixed = make_body(&sample, &three), logarithmic = make_body(&sample, &other);
     double *u = linear_field(&sample, (double[]){1.01, 0, 0, 0, 1.01, 0, 0, 0, 1.01}, NULL);
     double pressure = material_pressure(&one.material[0], dim == 2 ? 1.0201 : 1.030301);
     (void)body_energy(&body, u);
@@ -175,6 +178,7 @@ TEST_IN_EACH_DIM(edges)
     double *force = zeros(sample.cloud.node_count * dim, sizeof *force);
     check_work(&sample, &body, deformed_field(&sample, &body, force, &random), 1, &random);
     check_work(&sample, &mixed, deformed_field(&sample, &mixed, force, &random), 1, &random);
+    check_work(&sample, &logarithmic, deformed_field(&sample, &logarithmic, force, &random), 1, &random);
 }
 
 /* A body of one material, of that Poisson's ratio. */

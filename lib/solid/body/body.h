@@ -83,11 +83,12 @@ struct nodal_volumes {
                         points whose material is too compressible for nodal pressures */
     int64_t *ptr;    /* count + 1 */
     int32_t *slot;   /* ptr[count]: the places of a nodal volume in these two, ascending */
-    double *strain;  /* point_count: y at the last evaluation */
+    double *change;  /* point_count: J - 1 at the last evaluation */
     double *direct;  /* point_count: what s acts on: y, or near edges means of it; NULL: no edges, y itself */
     double *modulus; /* count: S of nodal volumes that have a cell at an edge, N m (2D: N); 0 of others; */
     double *mean;    /* and Y of these, 0 of others */
     double *content; /* count: b, m3 (2D: m2) */
+    double *slope;   /* count: y' at the mean J; NULL: all are 1, as no law is in ln J */
     double *pressure; /* count: pi, Pa */
     struct nodal_pressures pressures;
 };

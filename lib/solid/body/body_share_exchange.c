@@ -39,8 +39,11 @@ void body_share_collect(struct body *body)
     ranks_gather(share->ranks, body->J, sizeof *body->J, share->point_first);
     body_collect_history(body);
     if (body->averaged) {
-        ranks_gather(share->ranks, body->volumes.strain, sizeof *body->volumes.strain, share->point_first);
+        ranks_gather(share->ranks, body->volumes.change, sizeof *body->volumes.change, share->point_first);
         body_share_collect_pressures(body);
+    }
+    if (body->averaged && body->volumes.slope != NULL) {
+        ranks_gather(share->ranks, body->volumes.slope, sizeof *body->volumes.slope, share->volume_first);
     }
     if (body->averaged && body->volumes.direct != NULL) {
         ranks_gather(share->ranks, body->volumes.direct, sizeof *body->volumes.direct, share->point_first);

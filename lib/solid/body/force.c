@@ -126,7 +126,7 @@ static void set_block(struct body *body, int64_t b)
         force_point_gradients(body, b);
     }
     if (body->averaged) {
-        nodal_volumes_strain(body, b);
+        nodal_volumes_change(body, b);
     }
 }
 
@@ -137,7 +137,7 @@ static void set_state(struct body *body, const double *u)
     apply(body, body->u, body->smoothed ? body->cells.averages.value : body->derivative);
     for_blocks(body, set_block);
     if (body->averaged) {
-        body_share_exchange(&body->share, &body->share.strains, 1, body->volumes.strain);
+        body_share_exchange(&body->share, &body->share.strains, 1, body->volumes.change);
         nodal_volumes_evaluate(body);
     }
 }

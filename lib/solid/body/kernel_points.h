@@ -115,7 +115,7 @@ KERNEL_INLINE void kernel_pressures(const struct body *body, const struct block 
     }
     const int32_t *volume = body->volumes.of_point + block->first_point * (dim + 1);
     const double *share = body->volumes.share + block->first_point * (dim + 1);
-    const double *direct = body->volumes.direct != NULL ? body->volumes.direct : body->volumes.strain;
+    const double *direct = body->volumes.direct != NULL ? body->volumes.direct : body->volumes.change;
     direct += block->first_point;
     for (int64_t i = 0; i < block->point_count; i++) {
         double sum = 0.0;

@@ -84,7 +84,7 @@ enum status nodal_volumes_build(const struct body_input *input, struct body *bod
     RETURN_IF_ERROR(NEW_ARRAY(&volumes->of_point, slots, error));
     RETURN_IF_ERROR(NEW_ARRAY(&volumes->share, slots, error));
     RETURN_IF_ERROR(NEW_ARRAY(&volumes->slot, slots, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&volumes->strain, body->point_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&volumes->change, body->point_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&at_edge, body->point_count, error));
     for (int64_t s = 0; s < slots; s++) {
         int64_t q = s / vertices, from = body->order[q] * vertices + s % vertices;
@@ -103,6 +103,11 @@ enum status nodal_volumes_build(const struct body_input *input, struct body *bod
     }
     RETURN_IF_ERROR(body_share_volumes(body, error));
     RETURN_IF_ERROR(nodal_pressures_build(body, error));
+    for (int64_t m = 0; m < body->material_count && volumes->slope == NULL; m++) {
+        if (material_is_logarithmic(&body->materials[m])) {
+            RETURN_IF_ERROR(NEW_ARRAY(&volumes->slope, volumes->count, error));
+        }
+    }
     RETURN_IF_ERROR(NEW_ARRAY(&volumes->content, volumes->count, error));
     return NEW_ARRAY(&volumes->pressure, volumes->count, error);
 }
@@ -122,7 +127,29 @@ double nodal_pressure_compliance(const struct material *material, int dim)
     return stabilisation[dim - 2] / ((dim + 2) * material->shear_modulus);
 }
 
-/* b */
+static bool is_logarithmic(const struct body *body, int64_t point)
+{
+    return material_is_logarithmic(&body->materials[body->material[point]]);
+}
+
+/* b and y' of a nodal volume in ln J, from its change of volume in `content`. */
+static void take_logarithm(const struct body *body, int64_t a)
+{
+    const struct nodal_volumes *volumes = &body->volumes;
+    int vertices = body->dim + 1;
+    double volume = 0.0, change = volumes->content[a];
+    volumes->slope[a] = 1.0;
+    if (!is_logarithmic(body, volumes->slot[volumes->ptr[a]] / vertices) || change == 0.0) {
+        return;
+    }
+    for (int64_t i = volumes->ptr[a]; i < volumes->ptr[a + 1]; i++) {
+        volume += volumes->share[volumes->slot[i]];
+    }
+    volumes->content[a] = volume * log1p(change / volume);
+    volumes->slope[a] = volume / (volume + change);
+}
+
+/* b and y' */
 static inline __attribute__((always_inline)) void sum_content(struct body *body, int vertices)
 {
     struct nodal_volumes *volumes = &body->volumes;
@@ -133,18 +160,28 @@ static inline __attribute__((always_inline)) void sum_content(struct body *body,
         double sum = 0.0;
         for (int64_t i = volumes->ptr[a]; i < volumes->ptr[a + 1]; i++) {
             int32_t slot = volumes->slot[i];
-            sum += volumes->share[slot] * volumes->strain[slot / vertices];
+            sum += volumes->share[slot] * volumes->change[slot / vertices];
         }
         volumes->content[a] = sum;
+        if (volumes->slope != NULL) {
+            take_logarithm(body, a);
+        }
     }
 }
 
-void nodal_volumes_strain(struct body *body, int64_t b)
+void nodal_volumes_change(struct body *body, int64_t b)
 {
     const struct block *block = &body->blocks[b];
     for (int64_t q = block->first_point; q < block->first_point + block->point_count; q++) {
-        body->volumes.strain[q] = material_volume_strain(&body->materials[body->material[q]], body->J[q]);
+        body->volumes.change[q] = body->J[q] - 1.0;
     }
+}
+
+/* y of a point */
+static double strain(const struct body *body, int64_t point)
+{
+    double change = body->volumes.change[point];
+    return is_logarithmic(body, point) ? log1p(change) : change;
 }
 
 /* The strains on which s acts in a body with edges: theta_a Y_a + (1 - theta_a) y_q, summed with N_a(q). */
@@ -162,21 +199,19 @@ static void average_strains(struct body *body)
         for (int64_t i = volumes->ptr[a]; i < volumes->ptr[a + 1]; i++) {
             int64_t slot = volumes->slot[i], q = slot / vertices;
             double modulus = nodal_volume_modulus(&body->materials[body->material[q]]);
-            sum += volumes->share[slot] * modulus * volumes->strain[q];
+            sum += volumes->share[slot] * modulus * strain(body, q);
         }
         volumes->mean[a] = sum / volumes->modulus[a];
     }
     body_share_exchange(share, &share->pressures, 1, volumes->mean);
 #pragma omp for schedule(static)
     for (int64_t q = share->begin_point; q < share->end_point; q++) {
-        double change = 0.0;
+        double change = 0.0, own = strain(body, q);
         for (int64_t slot = q * vertices; slot < (q + 1) * vertices; slot++) {
             int32_t a = volumes->of_point[slot];
-            change += volumes->modulus[a] > 0.0
-                          ? volumes->share[slot] * (volumes->mean[a] - volumes->strain[q])
-                          : 0.0;
+            change += volumes->modulus[a] > 0.0 ? volumes->share[slot] * (volumes->mean[a] - own) : 0.0;
         }
-        volumes->direct[q] = volumes->strain[q] + change / body->weight[q];
+        volumes->direct[q] = own + change / body->weight[q];
     }
 }
 
@@ -187,48 +222,52 @@ void nodal_volumes_evaluate(struct body *body)
     } else {
         sum_content(body, 4);
     }
+    if (body->volumes.slope != NULL) {
+        body_share_exchange(&body->share, &body->share.pressures, 1, body->volumes.slope);
+    }
     if (body->volumes.direct != NULL) {
         average_strains(body);
     }
     nodal_pressures_solve(body);
 }
 
-/* sum_a N_a(q) pi_a */
-static double carried(const struct body *body, int64_t point)
+/* The pressure of the part s of a point's bulk modulus, by y'. */
+static double direct(const struct body *body, int64_t point)
 {
-    const struct nodal_volumes *volumes = &body->volumes;
-    int vertices = body->dim + 1;
-    double sum = 0.0;
-    for (int64_t k = point * vertices; k < (point + 1) * vertices; k++) {
-        sum += volumes->share[k] * volumes->pressure[volumes->of_point[k]];
-    }
-    return sum / body->weight[point];
-}
-
-/* dU/dy of a point at the last evaluation, Pa. */
-static double conjugate(const struct body *body, int64_t point)
-{
-    const struct nodal_volumes *volumes = &body->volumes;
-    const double *direct = volumes->direct != NULL ? volumes->direct : volumes->strain;
-    return carried(body, point) +
-           nodal_volume_modulus(&body->materials[body->material[point]]) * direct[point];
+    const double *of = body->volumes.direct;
+    return nodal_volume_modulus(&body->materials[body->material[point]]) *
+           (of != NULL ? of[point] : strain(body, point));
 }
 
 double nodal_volume_pressure(const struct body *body, int64_t point)
 {
-    return conjugate(body, point) *
-           material_volume_slope(&body->materials[body->material[point]], body->J[point]);
+    const struct nodal_volumes *volumes = &body->volumes;
+    int vertices = body->dim + 1;
+    double sum = 0.0, slope = is_logarithmic(body, point) ? 1.0 / body->J[point] : 1.0;
+    for (int64_t k = point * vertices; k < (point + 1) * vertices; k++) {
+        int32_t a = volumes->of_point[k];
+        sum += volumes->share[k] * volumes->pressure[a] * (volumes->slope != NULL ? volumes->slope[a] : 1.0);
+    }
+    return sum / body->weight[point] + slope * direct(body, point);
 }
 
 double nodal_volume_energy(const struct body *body, int64_t point)
 {
-    return 0.5 * conjugate(body, point) * body->volumes.strain[point];
+    const struct nodal_volumes *volumes = &body->volumes;
+    int vertices = body->dim + 1;
+    bool by_volume = is_logarithmic(body, point);
+    double sum = 0.0, own = strain(body, point);
+    for (int64_t k = point * vertices; k < (point + 1) * vertices; k++) {
+        int32_t a = volumes->of_point[k];
+        sum += volumes->share[k] * volumes->pressure[a] * (by_volume ? -log(volumes->slope[a]) : own);
+    }
+    return 0.5 * (sum / body->weight[point] + direct(body, point) * own);
 }
 
 void nodal_volumes_free(struct nodal_volumes *volumes)
 {
     nodal_pressures_free(&volumes->pressures);
-    FREE_ALL(volumes->of_point, volumes->share, volumes->ptr, volumes->slot, volumes->strain,
+    FREE_ALL(volumes->of_point, volumes->share, volumes->ptr, volumes->slot, volumes->change, volumes->slope,
              volumes->content, volumes->pressure, volumes->direct, volumes->modulus, volumes->mean);
     *volumes = (struct nodal_volumes){0};
 }

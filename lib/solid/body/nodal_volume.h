@@ -17,7 +17,8 @@
  *
  * Nodes at edges between clamped and free sides, and at re-entrant ones, own no nodal volume: the other nodes
  * of their cells share it, and s acts on whole nodal volumes there (13a). Cells without other nodes are not
- * changed. Groups of materials do not share nodal volumes, since the pressure jumps between them. */
+ * changed. Groups of materials do not share nodal volumes, since the pressure jumps between them; the
+ * materials of a group have one law. */
 #pragma once
 
 #include "solid/body/body.h"
@@ -27,10 +28,10 @@ MUST_CHECK enum status nodal_volumes_build(const struct body_input *input, struc
                                            struct error *error);
 void nodal_volumes_free(struct nodal_volumes *volumes);
 
-/* Set y of the points of block b from body->J. */
-void nodal_volumes_strain(struct body *body, int64_t b);
+/* Set J - 1 of the points of block b from body->J. */
+void nodal_volumes_change(struct body *body, int64_t b);
 
-/* Set b and pi from y. Called by all threads of a parallel region together. */
+/* Set b and pi from J - 1. Called by all threads of a parallel region together. */
 void nodal_volumes_evaluate(struct body *body);
 
 /* The part s of the bulk modulus, Pa. */
