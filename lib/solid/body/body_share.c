@@ -1,5 +1,6 @@
 #include "solid/body/body_share.h"
 
+#include "base/lists.h"
 #include "base/memory.h"
 #include "solid/body/body.h"
 
@@ -134,11 +135,6 @@ static int64_t row_count(const struct body *body)
     return body->smoothed ? body->cells.averages.row_count : body->point_count * body->dim;
 }
 
-static int64_t point_of_use(const struct body *body, int64_t use)
-{
-    return field_averages_cell(&body->cells.averages, body->dim, use);
-}
-
 enum status body_share_values(const struct body *body, bool **wanted, struct error *error)
 {
     const struct body_share *share = &body->share;
@@ -151,18 +147,22 @@ enum status body_share_values(const struct body *body, bool **wanted, struct err
         }
         return STATUS_OK;
     }
-    int64_t edges = CELL_EDGES(dim), first[] = {0, field_averages_vertices(averages, dim), 0};
-    int64_t begin[] = {share->begin_point * edges, share->begin_point * (dim + 1), 0};
-    int64_t end[] = {share->end_point * edges, share->end_point * (dim + 1), 0};
-    first[2] = field_averages_faces(averages, dim);
-    begin[2] = field_averages_face(averages, share->begin_point);
-    end[2] = field_averages_face(averages, share->end_point);
-    for (int kind = 0; kind < 3; kind++) {
-        for (int64_t i = first[kind] + begin[kind]; i < first[kind] + end[kind]; i++) {
+    int64_t begin[USE_KINDS], end[USE_KINDS];
+    field_averages_uses(averages, dim, share->begin_point, share->end_point, begin, end);
+    for (int kind = 0; kind < USE_KINDS; kind++) {
+        for (int64_t i = begin[kind]; i < end[kind]; i++) {
             (*wanted)[averages->of_use[i] / VECTOR_STRIDE(dim)] = true;
         }
     }
     return STATUS_OK;
+}
+
+static int owner_of_part(const void *context, int64_t part)
+{
+    const struct body *body = context;
+    const struct field_averages *averages = &body->cells.averages;
+    int64_t b = first_from(averages->part_first, 0, averages->block_count + 1, part + 1) - 1;
+    return ranks_owner(body->share.ranks, body->share.block_first, b);
 }
 
 /* Who has the forces on a row. One without uses has none. */
@@ -173,36 +173,31 @@ static int owner_of_row(const void *context, int64_t row)
     if (!body->smoothed) {
         return owner_of_point(body, row / body->dim);
     }
-    int64_t at = averages->use_ptr[row];
-    return at < averages->use_ptr[row + 1] ? owner_of_point(body, point_of_use(body, averages->use[at])) : 0;
+    int64_t at = averages->part_ptr[row];
+    return at < averages->part_ptr[row + 1] ? owner_of_part(body, averages->part[at]) : 0;
 }
 
-static int owner_of_use(const void *body, int64_t use)
-{
-    return owner_of_point(body, point_of_use(body, use));
-}
-
-/* The rows that are summed here, and their uses. */
-static enum status share_uses(struct body *body, struct error *error)
+/* The rows that are summed here, and their parts. */
+static enum status share_parts(struct body *body, struct error *error)
 {
     struct body_share *share = &body->share;
     const struct field_averages *averages = &body->cells.averages;
+    int64_t count = averages->part_first[averages->block_count];
     NEW_SCRATCH(bool, sums, averages->row_count, error);
-    NEW_SCRATCH(bool, uses, averages->use_count, error);
+    NEW_SCRATCH(bool, parts, count, error);
     for (int64_t r = 0; r < averages->row_count; r++) {
         sums[r] = owner_of_row(body, r) == ranks_rank(share->ranks);
-        for (int64_t i = averages->use_ptr[r]; i < averages->use_ptr[r + 1] && sums[r]; i++) {
-            uses[averages->use[i]] = true;
+        for (int64_t i = averages->part_ptr[r]; i < averages->part_ptr[r + 1] && sums[r]; i++) {
+            parts[averages->part[i]] = true;
         }
     }
     RETURN_IF_ERROR(row_ranges_of(0, averages->row_count, sums, &share->sums, error));
-    return halo_build(share->ranks, averages->use_count, uses, body->dim, owner_of_use, body, &share->uses,
-                      error);
+    return halo_build(share->ranks, count, parts, body->dim, owner_of_part, body, &share->parts, error);
 }
 
 enum status body_share_rows(struct body *body, const bool *wanted, struct error *error)
 {
-    RETURN_IF_ERROR(body->smoothed ? share_uses(body, error) : STATUS_OK);
+    RETURN_IF_ERROR(body->smoothed ? share_parts(body, error) : STATUS_OK);
     return halo_build(body->share.ranks, row_count(body), wanted, VECTOR_STRIDE(body->dim), owner_of_row,
                       body, &body->share.rows, error);
 }
@@ -225,6 +220,6 @@ void body_share_free(struct body_share *share)
     row_ranges_free(&share->sums);
     halo_free(&share->strains);
     halo_free(&share->pressures);
-    halo_free(&share->uses);
+    halo_free(&share->parts);
     halo_free(&share->rows);
 }

@@ -26,7 +26,7 @@ struct body_share {
     struct row_ranges sums;   /* smoothed cells: rows whose forces are summed here */
     struct halo strains;      /* of points: for nodal volumes */
     struct halo pressures;    /* of nodal volumes: those beside own ones, and at own points */
-    struct halo uses;         /* of smoothed cells: forces on rows that are summed here */
+    struct halo parts;        /* of smoothed cells: parts of the forces on rows that are summed here */
     struct halo rows;         /* forces on rows, for own nodes */
 };
 

@@ -74,12 +74,12 @@ static void apply_transposed(const struct body *body, const double *x, double *y
     }
 }
 
-static void sum_uses(struct body *body)
+static void sum_parts(struct body *body)
 {
     const struct row_ranges *rows = &body->share.sums;
 #pragma omp for schedule(static)
     for (int64_t i = 0; i < rows->count; i++) {
-        force_sum_uses(body->dim, &body->cells.averages, rows->items[i].begin, rows->items[i].end);
+        force_sum_parts(body->dim, &body->cells.averages, rows->items[i].begin, rows->items[i].end);
     }
 }
 
@@ -153,8 +153,8 @@ static void evaluate(struct body *body, const double *u, double *force)
         set_state(body, u);
         if (body->smoothed) {
             for_blocks(body, stress_cell_block);
-            body_share_exchange(share, &share->uses, body->dim, averages->use_force);
-            sum_uses(body);
+            body_share_exchange(share, &share->parts, body->dim, averages->part_force);
+            sum_parts(body);
             body_share_exchange(share, &share->rows, stride, averages->force);
             apply_transposed(body, averages->force, body->force);
         } else {

@@ -42,9 +42,9 @@ ALL_SETS void force_apply_transposed(int dim, const struct row_operator *rows, i
              : apply_transposed_3(rows, &rows->stripes[stripe], x, y);
 }
 
-ALL_SETS void force_sum_uses(int dim, struct field_averages *averages, int64_t begin, int64_t end)
+ALL_SETS void force_sum_parts(int dim, struct field_averages *averages, int64_t begin, int64_t end)
 {
-    dim == 2 ? sum_uses_2(averages, begin, end) : sum_uses_3(averages, begin, end);
+    dim == 2 ? sum_parts_2(averages, begin, end) : sum_parts_3(averages, begin, end);
 }
 
 ALL_SETS void force_point_gradients(struct body *body, int64_t b)
@@ -75,7 +75,7 @@ ALL_SETS void force_cell_neo_hookean(const struct body *body, int64_t b, block_r
 
 ALL_SETS void force_cell_forces(struct body *body, int64_t b, block_rows P, block_rows T)
 {
-    FOR_KIND(body, b, kernel_cell_forces(body, &body->blocks[b], DIM, RELAXES, P, T));
+    FOR_KIND(body, b, kernel_cell_forces(body, b, DIM, RELAXES, P, T));
 }
 
 ALL_SETS void force_prony_state(const struct body *body, int64_t b, prony_rows X, prony_rows x)

@@ -17,7 +17,7 @@ void force_apply_transposed(int dim, const struct row_operator *rows, int64_t st
                             double *y);
 
 /* The forces of cells on averages begin .. end - 1. */
-void force_sum_uses(int dim, struct field_averages *averages, int64_t begin, int64_t end);
+void force_sum_parts(int dim, struct field_averages *averages, int64_t begin, int64_t end);
 
 /* Of the block of that number: F and J of points from the derivatives of the field; weighted stresses of
  * neo-Hookean points; and weighted stresses P in the place of the derivatives. */

@@ -5,15 +5,17 @@
 #include "solid/body/kernel_variance.h"
 #include "solid/body/merged_cells.h"
 
-/* Write `each` uses of each cell, the first of the body's is `first`. */
-KERNEL_INLINE void write_uses(struct field_averages *averages, int64_t first, int each,
-                              const struct block *block, int dim, const double (*forces)[BLOCK_MOST_POINTS])
+/* Add the forces of `each` uses of each cell to the parts of the block; the first of the body's is `first`.
+ */
+KERNEL_INLINE void add_uses(const struct field_averages *averages, int64_t first, int each,
+                            const struct block *block, int dim, const double (*forces)[BLOCK_MOST_POINTS],
+                            double *parts)
 {
-    double *use_force = averages->use_force + (first + block->first_point * each) * dim;
+    const uint16_t *part = averages->part_of_use + first + block->first_point * each;
     for (int64_t i = 0; i < block->point_count; i++) {
-        for (int k = 0; k < each; k++, use_force += dim) {
+        for (int k = 0; k < each; k++, part++) {
             for (int a = 0; a < dim; a++) {
-                use_force[a] = forces[k * dim + a][i];
+                parts[*part * dim + a] += forces[k * dim + a][i];
             }
         }
     }
@@ -111,12 +113,13 @@ KERNEL_INLINE void change_at_boundary(const struct body *body, const struct bloc
 }
 
 /* The transpose: the forces of P on these faces, and on the edges and vertices of the cells there. */
-KERNEL_INLINE void forces_at_boundary(struct body *body, const struct block *block, int dim,
-                                      const block_rows P, block_edges at_edges, block_vertices at_vertices)
+KERNEL_INLINE void forces_at_boundary(const struct body *body, const struct block *block, int dim,
+                                      const block_rows P, block_edges at_edges, block_vertices at_vertices,
+                                      double *parts)
 {
-    struct field_averages *averages = &body->cells.averages;
+    const struct field_averages *averages = &body->cells.averages;
     int64_t last = block->first_point + block->point_count, first = block->boundary_face;
-    double *force = averages->use_force + field_averages_faces(averages, dim) * dim;
+    const uint16_t *part = averages->part_of_use + field_averages_faces(averages, dim);
     for (int64_t f = first; f < averages->face_count && averages->face_cell[f] < last; f++) {
         int64_t i = averages->face_cell[f] - block->first_point;
         int k = averages->face_vertex[f];
@@ -126,7 +129,7 @@ KERNEL_INLINE void forces_at_boundary(struct body *body, const struct block *blo
             for (int b = 0; b < dim; b++) {
                 along += dim * P[dim * a + b][i] * grad_N[b];
             }
-            force[f * dim + a] = -along;
+            parts[part[f] * dim + a] -= along;
             for (int e = 0; e < FACE_EDGES(dim); e++) {
                 at_edges[cell_face_edge(dim, k, e) * dim + a][i] += EDGE_IN_FACE(dim) * along;
             }
@@ -304,11 +307,16 @@ KERNEL_INLINE void kernel_cell_neo_hookean(const struct body *body, const struct
     }
 }
 
-/* The forces of the cells on their rows: of the stresses P and T, and of the variance. */
-KERNEL_INLINE void kernel_cell_forces(struct body *body, const struct block *block, int dim, bool relaxes,
-                                      block_rows P, block_rows T)
+/* The forces of the cells of a block on their rows: of the stresses P and T, and of the variance. */
+KERNEL_INLINE void kernel_cell_forces(struct body *body, int64_t number, int dim, bool relaxes, block_rows P,
+                                      block_rows T)
 {
-    struct field_averages *averages = &body->cells.averages;
+    enum { MOST_USES = 14 }; /* of a cell: edges, vertices and faces */
+    const struct field_averages *averages = &body->cells.averages;
+    const struct block *block = &body->blocks[number];
+    int64_t first_part = averages->part_first[number];
+    size_t size = (size_t)((averages->part_first[number + 1] - first_part) * dim) * sizeof(double);
+    double parts[MOST_USES * BLOCK_MOST_POINTS * 3];
     block_edges edges, at_edges;
     block_vertices vertices, at_vertices;
     read_cells(body, block, dim, edges, vertices);
@@ -341,8 +349,10 @@ KERNEL_INLINE void kernel_cell_forces(struct body *body, const struct block *blo
             }
         }
     }
-    forces_at_boundary(body, block, dim, (const double(*)[BLOCK_MOST_POINTS])P, at_edges, at_vertices);
-    write_uses(averages, 0, CELL_EDGES(dim), block, dim, (const double(*)[BLOCK_MOST_POINTS])at_edges);
-    write_uses(averages, field_averages_vertices(averages, dim), dim + 1, block, dim,
-               (const double(*)[BLOCK_MOST_POINTS])at_vertices);
+    memset(parts, 0, size);
+    forces_at_boundary(body, block, dim, (const double(*)[BLOCK_MOST_POINTS])P, at_edges, at_vertices, parts);
+    add_uses(averages, 0, CELL_EDGES(dim), block, dim, (const double(*)[BLOCK_MOST_POINTS])at_edges, parts);
+    add_uses(averages, field_averages_vertices(averages, dim), dim + 1, block, dim,
+             (const double(*)[BLOCK_MOST_POINTS])at_vertices, parts);
+    memcpy(averages->part_force + first_part * dim, parts, size);
 }

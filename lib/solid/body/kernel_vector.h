@@ -18,6 +18,14 @@ typedef double lanes __attribute__((vector_size(8 * LANES)));
 typedef float lanes_float __attribute__((vector_size(4 * LANES)));
 typedef int32_t lanes_int __attribute__((vector_size(4 * LANES)));
 
-/* Unaligned loads and stores as copies, which compilers turn into single instructions. */
-#define LOAD(vector, from) memcpy(&(vector), (from), sizeof(vector))
-#define STORE(to, vector) memcpy((to), &(vector), sizeof(vector))
+/* Unaligned loads and stores. Copies by memcpy would go by halves, for which a load of the whole waits. */
+#define LOAD(vector, from)                                                                                   \
+    do {                                                                                                     \
+        typedef __typeof__(vector) anywhere __attribute__((aligned(4), may_alias));                          \
+        (vector) = *(const anywhere *)(from);                                                                \
+    } while (0)
+#define STORE(to, vector)                                                                                    \
+    do {                                                                                                     \
+        typedef __typeof__(vector) anywhere __attribute__((aligned(4), may_alias));                          \
+        *(anywhere *)(to) = (vector);                                                                        \
+    } while (0)

@@ -202,8 +202,15 @@ enum status smoothed_rows_build(const struct smoothed_cells_input *input, struct
         memcpy(vertex_of_cell + q * corners, input->cell_node + body->order[q] * corners,
                (size_t)corners * sizeof *vertex_of_cell);
     }
+    NEW_SCRATCH(int64_t, block_first, body->block_count + 1, error);
+    for (int64_t b = 0; b < body->block_count; b++) {
+        block_first[b] = body->blocks[b].first_point;
+    }
+    block_first[body->block_count] = body->point_count;
     struct field_averages_input tables = {
         .dim = dim,
+        .block_count = body->block_count,
+        .block_first = block_first,
         .node_count = body->node_count,
         .cell_count = body->point_count,
         .place = body->node_place,

@@ -142,6 +142,81 @@ static enum status list_uses(int dim, struct field_averages *averages, struct er
     return STATUS_OK;
 }
 
+void field_averages_uses(const struct field_averages *averages, int dim, int64_t first, int64_t last,
+                         int64_t begin[USE_KINDS], int64_t end[USE_KINDS])
+{
+    int64_t edges = CELL_EDGES(dim), vertices = field_averages_vertices(averages, dim),
+            faces = field_averages_faces(averages, dim);
+    begin[USE_EDGES] = first * edges;
+    end[USE_EDGES] = last * edges;
+    begin[USE_VERTICES] = vertices + first * (dim + 1);
+    end[USE_VERTICES] = vertices + last * (dim + 1);
+    begin[USE_FACES] = faces + field_averages_face(averages, first);
+    end[USE_FACES] = faces + field_averages_face(averages, last);
+}
+
+/* Number the parts of block b by their first uses, from `count` on: part_of_use and the lengths of the lists
+ * of rows, in part_ptr from its third entry on. number[row_count]: scratch, below `count`. Returns the next
+ * one. */
+static int64_t number_parts(const struct field_averages_input *input, struct field_averages *averages,
+                            int64_t b, int64_t count, int64_t *number)
+{
+    int64_t begin[USE_KINDS], end[USE_KINDS], first = averages->part_first[b] = count;
+    field_averages_uses(averages, input->dim, input->block_first[b], input->block_first[b + 1], begin, end);
+    for (int kind = 0; kind < USE_KINDS; kind++) {
+        for (int64_t i = begin[kind]; i < end[kind]; i++) {
+            int64_t row = averages->of_use[i] / VECTOR_STRIDE(input->dim);
+            if (number[row] < first) {
+                number[row] = count++;
+                averages->part_ptr[row + 2]++;
+            }
+            averages->part_of_use[i] = (uint16_t)(number[row] - first);
+        }
+    }
+    return count;
+}
+
+/* Put the parts of block b into the lists of their rows. */
+static void put_parts(const struct field_averages_input *input, struct field_averages *averages, int64_t b)
+{
+    int64_t begin[USE_KINDS], end[USE_KINDS], next = averages->part_first[b];
+    field_averages_uses(averages, input->dim, input->block_first[b], input->block_first[b + 1], begin, end);
+    for (int kind = 0; kind < USE_KINDS; kind++) {
+        for (int64_t i = begin[kind]; i < end[kind]; i++) {
+            int64_t row = averages->of_use[i] / VECTOR_STRIDE(input->dim);
+            if (averages->part_first[b] + averages->part_of_use[i] == next) {
+                averages->part[averages->part_ptr[row + 1]++] = (int32_t)next++;
+            }
+        }
+    }
+}
+
+/* The parts of each block and of each row. */
+static enum status list_parts(const struct field_averages_input *input, struct field_averages *averages,
+                              struct error *error)
+{
+    int64_t rows = averages->row_count, blocks = input->block_count, count = 0;
+    NEW_SCRATCH(int64_t, number, rows, error);
+    RETURN_IF_ERROR(NEW_ARRAY(&averages->part_first, blocks + 1, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&averages->part_of_use, averages->use_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&averages->part_ptr, rows + 2, error));
+    memset(number, -1, (size_t)rows * sizeof *number);
+    averages->block_count = blocks;
+    for (int64_t b = 0; b < blocks; b++) {
+        count = number_parts(input, averages, b, count, number);
+    }
+    averages->part_first[blocks] = count;
+    for (int64_t r = 0; r < rows; r++) {
+        averages->part_ptr[r + 2] += averages->part_ptr[r + 1];
+    }
+    RETURN_IF_ERROR(NEW_ARRAY(&averages->part, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(&averages->part_force, count * input->dim + 1, error));
+    for (int64_t b = 0; b < blocks; b++) {
+        put_parts(input, averages, b);
+    }
+    return STATUS_OK;
+}
+
 int64_t field_averages_face(const struct field_averages *averages, int64_t q)
 {
     return first_from(averages->face_cell, 0, averages->face_count, q);
@@ -165,15 +240,16 @@ enum status field_averages_build(const struct field_averages_input *input, struc
     RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(&averages->value, rows * stride, error));
     RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(&averages->force, rows * stride, error));
     RETURN_IF_ERROR(NEW_ARRAY(&averages->of_use, uses, error));
-    RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(&averages->use_force, uses * input->dim + 1, error));
     RETURN_IF_ERROR(match_uses(input, averages, error));
-    return list_uses(input->dim, averages, error);
+    RETURN_IF_ERROR(list_uses(input->dim, averages, error));
+    return list_parts(input, averages, error);
 }
 
 void field_averages_free(struct field_averages *averages)
 {
-    FREE_ALL(averages->value, averages->force, averages->of_use, averages->use_force, averages->use_ptr,
-             averages->use, averages->face_cell, averages->face_vertex, averages->face_gradient,
+    FREE_ALL(averages->value, averages->force, averages->of_use, averages->use_ptr, averages->use,
+             averages->part_first, averages->part_of_use, averages->part_force, averages->part_ptr,
+             averages->part, averages->face_cell, averages->face_vertex, averages->face_gradient,
              averages->edge_order);
     *averages = (struct field_averages){0};
 }

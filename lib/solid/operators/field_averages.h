@@ -3,7 +3,7 @@
  *
  * An evaluation computes the values (apply), evaluates the cells, sums the forces of the cells on each value,
  * and adds these to the nodes (transposed apply), equation (12) of lib/README.md. A use is that of a row by a
- * cell. */
+ * cell. A part is the force on a row of all cells of a block. */
 #pragma once
 
 #include "approx/cells/face_edges.h"
@@ -33,13 +33,18 @@ struct field_averages {
     int64_t cell_count;
     int64_t use_count; /* the CELL_EDGES(dim) edges of each cell, then the dim + 1 vertices of each cell, then
                           boundary faces */
-    int32_t *of_use;   /* use_count: offsets in value[] of the rows; */
-    double *use_force; /* use_count * dim + 1, the last one unused: the force of each use on its row */
+    int32_t *of_use;   /* use_count: offsets in value[] of the rows */
     int64_t *use_ptr;  /* row_count + 1: the uses of each row, */
     int32_t *use;      /* use_count, ascending in each row */
-    int64_t face_count;    /* boundary faces, by their cells: */
-    int64_t *face_cell;    /* the cell of each, ascending, */
-    int32_t *face_vertex;  /* which of its vertices is opposite, */
+    int64_t block_count;
+    int64_t *part_first;   /* block_count + 1: the parts of each block, */
+    uint16_t *part_of_use; /* use_count: and which of them each use is in */
+    double *part_force;   /* part_first[block_count] * dim + 1, the last one unused: each part, N (2D: N/m) */
+    int64_t *part_ptr;    /* row_count + 1: the parts of each row, */
+    int32_t *part;        /* ascending in each row */
+    int64_t face_count;   /* boundary faces, by their cells: */
+    int64_t *face_cell;   /* the cell of each, ascending, */
+    int32_t *face_vertex; /* which of its vertices is opposite, */
     double *face_gradient; /* and the gradient of that vertex's linear shape function, 3 of each, 1/m (2D: the
                               last 0) */
     struct average_table given[2]; /* with several processes: the caller's tables, edges and nodes, */
@@ -67,12 +72,19 @@ static inline int64_t field_averages_cell(const struct field_averages *averages,
                           : averages->face_cell[use - faces];
 }
 
+/* The uses of cells first to last - 1: begin to end - 1 of each kind. */
+enum { USE_EDGES, USE_VERTICES, USE_FACES, USE_KINDS };
+void field_averages_uses(const struct field_averages *averages, int dim, int64_t first, int64_t last,
+                         int64_t begin[USE_KINDS], int64_t end[USE_KINDS]);
+
 /* The first boundary face of cell q, or of a cell after it. */
 int64_t field_averages_face(const struct field_averages *averages, int64_t q);
 
 struct field_averages_input {
     int dim;
     int64_t node_count, cell_count, face_count;
+    int64_t block_count;
+    const int64_t *block_first;     /* block_count + 1: the first cell of each block */
     const int32_t *place;           /* node_count: the body's index of each of the caller's nodes */
     struct average_table tables[2]; /* edges, and boundary faces; nodes */
     int64_t *face_cell;             /* as above; the averages take these two, */
