@@ -3,13 +3,14 @@
 
 #include <float.h>
 #include <math.h>
+#include <string.h>
 
 /* With contacts, an error that stays below this is accepted: points that alternate between two facets keep it
  * from falling. */
 static const double most_hovering = 1e-3;
-/* A body whose largest displacement grows by this factor has not come to its end; nor one whose load does by
- * this share. */
-static const double moves_on = 1.1, least_growth = 1e-3;
+/* A body that has moved by this share of its largest displacement has not come to its end: a slender one that
+ * has buckled may turn for long, by small steps. Nor has one whose load has grown by this share. */
+static const double moves_on = 0.1, least_growth = 1e-3;
 /* The pressures are augmented after steps shorter than this, by the largest displacement. */
 static const double most_length = 0.1;
 static const int64_t most_vain = 12; /* corrections in which the error has not halved */
@@ -86,11 +87,14 @@ static int64_t note_progress(struct newton *n)
 {
     struct statics_report *report = n->report;
     bool halved = report->error < 0.5 * n->best_error && !n->sticks;
-    bool moved = report->move > moves_on * n->best_move && !newton_held_by_friction(n);
+    for (int64_t i = 0; i < n->size; i++) {
+        n->product[i] = n->u[i] - n->marked[i];
+    }
+    bool moved = newton_longest(n, n->product, NULL) > moves_on * report->move && !newton_held_by_friction(n);
     if (n->load > n->best_load + least_growth || report->steps == 1 || halved || moved) {
         n->best_load = n->load;
         n->best_error = report->error;
-        n->best_move = report->move;
+        memcpy(n->marked, n->u, (size_t)n->size * sizeof *n->u);
         n->best_step = report->steps;
     }
     return report->steps - n->best_step;

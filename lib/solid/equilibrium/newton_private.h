@@ -57,7 +57,7 @@ struct newton {
     double largest_move;   /* so far, of a node, m */
     double best_error;     /* since the load has grown, */
     double best_load;      /* to that, */
-    double best_move;      /* the largest displacement then, m, */
+    double *marked;        /* u then, */
     int64_t best_step;     /* and when; the error has not halved since */
     double *nearest;       /* u of the least error at this load, */
     double nearest_error;  /* which it is; INFINITY: not near equilibrium */

@@ -10,7 +10,7 @@ enum status newton_allocate(struct newton *n, struct error *error)
     double **vectors[] = {&n->at_u.smooth,  &n->at_u.contact,  &n->at_trial.smooth, &n->at_trial.contact,
                           &n->model.smooth, &n->model.contact, &n->trial,           &n->step,
                           &n->search,       &n->product,       &n->scaled,          &n->before,
-                          &n->last,         &n->kept,          &n->nearest};
+                          &n->last,         &n->kept,          &n->nearest,         &n->marked};
     RETURN_IF_ERROR(preconditioner_build(n->system, true, &n->preconditioner, error));
     for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++) {
         RETURN_IF_ERROR(NEW_ARRAY(vectors[i], n->size, error));
@@ -22,7 +22,7 @@ void newton_release(struct newton *n)
 {
     FREE_ALL(n->at_u.smooth, n->at_u.contact, n->at_trial.smooth, n->at_trial.contact, n->model.smooth,
              n->model.contact, n->trial, n->step, n->search, n->product, n->scaled, n->before, n->last,
-             n->kept, n->nearest, n->factor_change);
+             n->kept, n->nearest, n->marked, n->factor_change);
     preconditioner_free(&n->preconditioner);
 }
 
@@ -55,7 +55,7 @@ enum status newton_visit(void *run, const struct state *state, struct error *err
         {"usual", STATE_NUMBERS, &n->usual, 1},
         {"excess", STATE_NUMBERS, &n->excess, 1},
         {"cost", STATE_COUNTS, &n->cost, 1},
-        {"best_move", STATE_NUMBERS, &n->best_move, 1},
+        {"marked", STATE_NUMBERS, n->marked, n->size},
         {"best_load", STATE_NUMBERS, &n->best_load, 1},
         {"best_error", STATE_NUMBERS, &n->best_error, 1},
         {"nearest", STATE_NUMBERS, n->nearest, n->size},
