@@ -78,13 +78,3 @@ struct owned {
  */
 MUST_CHECK enum status owned_add(struct owned *owned, void *memory, const char *name, struct error *error);
 void owned_free(struct owned *owned);
-
-/* Evaluate a status expression; on failure, leave through the label `done` with `status` set: in functions
- * that have more to do there than SCRATCH and FREED_BY can. */
-#define TRY(expression)                                                                                      \
-    do {                                                                                                     \
-        status = (expression);                                                                               \
-        if (status != STATUS_OK) {                                                                           \
-            goto done;                                                                                       \
-        }                                                                                                    \
-    } while (0)

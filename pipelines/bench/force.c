@@ -58,23 +58,20 @@ static enum status smoothed_cells_input(const struct problem *problem, struct sm
 static enum status build_body(const struct problem *problem, const struct variant *variant, struct body *body,
                               struct error *error)
 {
-    enum status status;
     const struct cells *cells = &problem->cells;
     int dim = cells->dim, corners = dim + 1;
     int64_t count = variant->smoothed ? cells->count : problem->point_count;
-    double *weight = NULL, *barycentric = NULL, *x = NULL;
-    int32_t *none = NULL;
-    int64_t *edge_ptr = NULL;
+    SCRATCH int64_t *edge_ptr = NULL;
     struct smoothed_cells_input smoothed = {0};
     struct material material = {.model = MATERIAL_NEO_HOOKEAN, .density = 1000.0};
     material_set_moduli(&material, 3000.0, 0.49);
     if (variant->smoothed) {
-        TRY(smoothed_cells_input(problem, &smoothed, &edge_ptr, error));
+        RETURN_IF_ERROR(smoothed_cells_input(problem, &smoothed, &edge_ptr, error));
     }
-    TRY(NEW_ARRAY(&weight, count, error));
-    TRY(NEW_ARRAY(&none, count, error));
-    TRY(NEW_ARRAY(&barycentric, count * corners, error));
-    TRY(NEW_ARRAY(&x, count * dim, error));
+    NEW_SCRATCH(double, weight, count, error);
+    NEW_SCRATCH(int32_t, none, count, error);
+    NEW_SCRATCH(double, barycentric, count * corners, error);
+    NEW_SCRATCH(double, x, count * dim, error);
     for (int64_t q = 0; q < count; q++) {
         weight[q] = count == cells->count ? cell_volume(cells, q) : 1e-3 / (double)count;
         if (variant->smoothed) {
@@ -99,33 +96,24 @@ static enum status build_body(const struct problem *problem, const struct varian
                                .material_count = 1,
                                .vertex = variant->averaged ? cells->node : NULL,
                                .barycentric = barycentric};
-    TRY(body_build(&input, body, error));
-done:
-    free(edge_ptr);
-    free(weight);
-    free(none);
-    free(barycentric);
-    free(x);
-    return status;
+    return body_build(&input, body, error);
 }
 
 static enum status make_loop(struct loop *loop, struct problem *problem, const struct variant *variant,
                              struct error *error)
 {
-    enum status status;
     const struct cells *cells = &problem->cells;
     *loop = (struct loop){.problem = problem};
     double before = problem_heap_bytes();
-    TRY(build_body(problem, variant, &loop->body, error));
+    RETURN_IF_ERROR(build_body(problem, variant, &loop->body, error));
     loop->heap = problem_heap_bytes() - before;
-    TRY(NEW_ARRAY(&loop->u, cells->node_count * cells->dim, error));
-    TRY(NEW_ARRAY(&loop->force, cells->node_count * cells->dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&loop->u, cells->node_count * cells->dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&loop->force, cells->node_count * cells->dim, error));
     for (int64_t i = 0; i < cells->node_count * cells->dim; i++) {
         double x = cells->x[i];
         loop->u[i] = 0.03 * x + 0.2 * x * x;
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 static void free_loop(struct loop *loop)

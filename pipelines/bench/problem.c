@@ -19,16 +19,12 @@ double problem_heap_bytes(void)
 static enum status build_lists(const struct problem *problem, int64_t count, const double *x,
                                const char *name, struct support_lists *lists, struct error *error)
 {
-    enum status status;
     struct support_options options = problem->options;
-    struct support_space space = {0};
+    FREED_BY(support_space_free) struct support_space space = {0};
     options.visibility = VISIBILITY_DISTANCE;
     support_free(lists);
-    TRY(support_space_build(&options, &problem->cells, problem->radius, &space, error));
-    TRY(support_build(&options, &space, NULL, count, x, name, lists, error));
-done:
-    support_space_free(&space);
-    return status;
+    RETURN_IF_ERROR(support_space_build(&options, &problem->cells, problem->radius, &space, error));
+    return support_build(&options, &space, NULL, count, x, name, lists, error);
 }
 
 enum status problem_support(void *context, struct error *error)
@@ -39,34 +35,28 @@ enum status problem_support(void *context, struct error *error)
 
 enum status problem_nodes(struct problem *problem, struct error *error)
 {
-    enum status status;
     int64_t count = problem->cells.node_count;
     const double *x = problem->cells.x;
-    TRY(build_lists(problem, count, x, "nodes.x", &problem->node_lists, error));
-    TRY(NEW_ARRAY(&problem->node_phi, problem->node_lists.ptr[count], error));
+    RETURN_IF_ERROR(build_lists(problem, count, x, "nodes.x", &problem->node_lists, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&problem->node_phi, problem->node_lists.ptr[count], error));
     struct neighbours lists = support_view(&problem->node_lists);
-    TRY(shape_table(&problem->options.mls, x, problem->radius, &lists, x, "nodes.x", problem->node_phi, NULL,
-                    error));
-done:
-    return status;
+    return shape_table(&problem->options.mls, x, problem->radius, &lists, x, "nodes.x", problem->node_phi,
+                       NULL, error);
 }
 
 /* The table, allocated with the first run. */
 static enum status run_shape(struct problem *problem, bool gradients, struct error *error)
 {
-    enum status status;
     int64_t pairs = problem->lists.ptr[problem->point_count];
     struct neighbours lists = support_view(&problem->lists);
     if (problem->phi == NULL) {
-        TRY(NEW_ARRAY(&problem->phi, pairs, error));
+        RETURN_IF_ERROR(NEW_ARRAY(&problem->phi, pairs, error));
     }
     if (gradients && problem->dphi == NULL) {
-        TRY(NEW_ARRAY(&problem->dphi, pairs * problem->cloud.dim, error));
+        RETURN_IF_ERROR(NEW_ARRAY(&problem->dphi, pairs * problem->cloud.dim, error));
     }
-    TRY(shape_table(&problem->options.mls, problem->cloud.x, problem->radius, &lists, problem->points,
-                    "points.x", problem->phi, gradients ? problem->dphi : NULL, error));
-done:
-    return status;
+    return shape_table(&problem->options.mls, problem->cloud.x, problem->radius, &lists, problem->points,
+                       "points.x", problem->phi, gradients ? problem->dphi : NULL, error);
 }
 
 enum status problem_gradients(void *context, struct error *error)
@@ -98,35 +88,31 @@ enum status problem_edges(const struct problem *problem, int64_t **edge_ptr, con
 static enum status make_body(struct problem *problem, int dim, int64_t per_axis, double jitter,
                              struct error *error)
 {
-    enum status status;
     struct cloud_options wanted = {.kind = CLOUD_JITTERED, .dim = dim, .jitter = jitter};
     *problem = (struct problem){.options = support_defaults(dim), .heap = problem_heap_bytes()};
     for (int a = 0; a < dim; a++) {
         wanted.count[a] = per_axis;
         wanted.high[a] = 0.1;
     }
-    TRY(cloud_make(&wanted, &problem->cloud, error));
+    RETURN_IF_ERROR(cloud_make(&wanted, &problem->cloud, error));
     problem->cells = (struct cells){dim, problem->cloud.node_count, problem->cloud.x,
                                     problem->cloud.cell_count, problem->cloud.cells};
     problem->options.radius = 2.12 * 0.1 / (double)(per_axis - 1);
-    TRY(NEW_ARRAY(&problem->radius, problem->cells.node_count, error));
-    TRY(support_radii(&problem->options, problem->cells.node_count, NULL, problem->radius, error));
-done:
-    return status;
+    RETURN_IF_ERROR(NEW_ARRAY(&problem->radius, problem->cells.node_count, error));
+    return support_radii(&problem->options, problem->cells.node_count, NULL, problem->radius, error);
 }
 
 static enum status make_points(struct problem *problem, enum bench_points at, struct error *error)
 {
-    enum status status = STATUS_OK;
     const struct cells *cells = &problem->cells;
     int dim = cells->dim;
     if (at == BENCH_FACES) {
-        TRY(faces_build(cells, false, &problem->faces, error));
+        RETURN_IF_ERROR(faces_build(cells, false, &problem->faces, error));
     }
     problem->point_count = at == BENCH_CELLS   ? cells->count
                            : at == BENCH_NODES ? cells->node_count
                                                : face_point_count(&problem->faces);
-    TRY(NEW_ARRAY(&problem->points, problem->point_count * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&problem->points, problem->point_count * dim, error));
     if (at == BENCH_FACES) {
         face_points(&problem->faces, cells->x, problem->points);
     } else if (at == BENCH_NODES) {
@@ -135,8 +121,7 @@ static enum status make_points(struct problem *problem, enum bench_points at, st
     for (int64_t c = 0; c < cells->count && at == BENCH_CELLS; c++) {
         cell_centroid(cells, c, problem->points + c * dim);
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 static void problem_free(struct problem *problem)

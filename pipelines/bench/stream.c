@@ -81,18 +81,15 @@ static enum status run(void *context, struct error *error)
 /* Doubles of full length: 17 digits as text. */
 static enum status fill(struct stream *stream, int64_t rows, struct error *error)
 {
-    enum status status;
     double *values = NULL;
     uint64_t state = 1;
     stream_init(stream);
-    TRY(NEW_ARRAY(&values, rows * 3, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&values, rows * 3, error));
     for (int64_t i = 0; i < rows * 3; i++) {
         state = state * 6364136223846793005u + 1442695040888963407u;
         values[i] = (double)(state >> 11) / 9007199254740992.0 - 0.5;
     }
     return stream_put(stream, "shape.dphi", TYPE_F8, rows, 3, "unit=1/m", values, true, error);
-done:
-    return status;
 }
 
 static void bench(const char *kernel, bool text, bool write, bool pipe, int64_t rows, double seconds)

@@ -86,16 +86,14 @@ static size_t cross(const struct image *image, const double x[9], struct crossin
 static enum status fill(struct image *image, double label, const struct table *surface, struct error *error)
 {
     double *x = surface->values, voxel = 1e3 * image->to_world[0][0];
-    struct crossing *crossing = NULL;
     size_t count = 0, room = 0;
-    enum status status;
     for (int64_t v = 0; v < surface->rows * 9; v++) {
         x[v] = (x[v] - 1e3 * image->to_world[v % 3][3]) / voxel;
     }
     for (int64_t t = 0; t < surface->rows; t++) {
         room += cross(image, x + 9 * t, NULL);
     }
-    TRY(NEW_ARRAY(&crossing, (int64_t)room, error));
+    NEW_SCRATCH(struct crossing, crossing, (int64_t)room, error);
     for (int64_t t = 0; t < surface->rows; t++) {
         count += cross(image, x + 9 * t, crossing + count);
     }
@@ -103,16 +101,14 @@ static enum status fill(struct image *image, double label, const struct table *s
     for (size_t c = 0; c < count; c += 2) {
         size_t row = crossing[c].row;
         if (c + 1 == count || crossing[c + 1].row != row) {
-            TRY(fail(error, STATUS_INPUT, "the surface is not closed"));
+            return fail(error, STATUS_INPUT, "the surface is not closed");
         }
         for (size_t i = (size_t)fmax(0, ceil(crossing[c].at));
              i < image->size[0] && (double)i <= crossing[c + 1].at; i++) {
             image->values[row * image->size[0] + i] = label;
         }
     }
-done:
-    free(crossing);
-    return status;
+    return STATUS_OK;
 }
 
 int main(int argc, char *argv[])

@@ -62,30 +62,31 @@ void label_cells_begin(const struct label_cells_options *options, const char *st
     }
 }
 
+static enum status make(const struct labels *labels, const struct label_cells_options *options,
+                        struct label_cells *mesh, struct error *error)
+{
+    FREED_BY(lattice_free) struct lattice lattice = {0};
+    FREED_BY(label_cells_kept_free) struct label_cells_kept kept = {0};
+    SCRATCH bool *between = NULL;
+    label_cells_begin(options, "cutting the lattice");
+    RETURN_IF_ERROR(lattice_make(labels, options, &lattice, error));
+    RETURN_IF_ERROR(lattice_cut(&lattice, error));
+    RETURN_IF_ERROR(lattice_cells(&lattice, mesh, &between, error));
+    lattice_free(&lattice);
+    RETURN_IF_ERROR(label_cells_keep(labels, options, between, mesh, &kept, error));
+    if (mesh->facet_count == 0) {
+        return fail(error, STATUS_INPUT, "spacing %g m: no lattice point lies in a label: smaller?",
+                    options->spacing);
+    }
+    RETURN_IF_ERROR(label_cells_improve(labels, options, &kept, mesh, error));
+    return label_cells_drop(kept.wanted, mesh, error);
+}
+
 enum status label_cells_make(const struct labels *labels, const struct label_cells_options *options,
                              struct label_cells *mesh, struct error *error)
 {
-    struct lattice lattice;
-    bool *between = NULL;
-    struct label_cells_kept kept = {0};
-    enum status status;
     *mesh = (struct label_cells){.dim = labels->dim};
-    label_cells_begin(options, "cutting the lattice");
-    TRY(lattice_make(labels, options, &lattice, error));
-    TRY(lattice_cut(&lattice, error));
-    TRY(lattice_cells(&lattice, mesh, &between, error));
-    lattice_free(&lattice);
-    TRY(label_cells_keep(labels, options, between, mesh, &kept, error));
-    if (mesh->facet_count == 0) {
-        TRY(fail(error, STATUS_INPUT, "spacing %g m: no lattice point lies in a label: smaller?",
-                 options->spacing));
-    }
-    TRY(label_cells_improve(labels, options, &kept, mesh, error));
-    TRY(label_cells_drop(kept.wanted, mesh, error));
-done:
-    lattice_free(&lattice);
-    label_cells_kept_free(&kept);
-    free(between);
+    enum status status = make(labels, options, mesh, error);
     if (status != STATUS_OK) {
         label_cells_free(mesh);
     }

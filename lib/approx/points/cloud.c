@@ -80,24 +80,22 @@ static void lattice_index(const struct cloud_options *options, int64_t node, int
 static enum status place_lattice(const struct cloud_options *options, struct cloud *cloud,
                                  struct error *error)
 {
-    enum status status = STATUS_OK;
-    double *at[3] = {NULL, NULL, NULL};
+    int64_t first[4] = {0}; /* coordinate along each axis */
     for (int a = 0; a < options->dim; a++) {
-        TRY(NEW_ARRAY(&at[a], options->count[a], error));
-        place_axis(options, a, at[a]);
+        first[a + 1] = first[a] + options->count[a];
+    }
+    NEW_SCRATCH(double, at, first[options->dim], error);
+    for (int a = 0; a < options->dim; a++) {
+        place_axis(options, a, at + first[a]);
     }
     for (int64_t n = 0; n < cloud->node_count; n++) {
         int64_t index[3];
         lattice_index(options, n, index);
         for (int a = 0; a < options->dim; a++) {
-            cloud->x[n * options->dim + a] = at[a][index[a]];
+            cloud->x[n * options->dim + a] = at[first[a] + index[a]];
         }
     }
-done:
-    for (int a = 0; a < 3; a++) {
-        free(at[a]);
-    }
-    return status;
+    return STATUS_OK;
 }
 
 static enum status jitter(const struct cloud_options *options, struct cloud *cloud, struct error *error)

@@ -303,22 +303,26 @@ static enum status check_coincident(struct mesh_draft *draft)
 
 /* ---- all of it ---- */
 
+static enum status build(struct mesh_draft *draft)
+{
+    const struct names *notes = &draft->msh->notes;
+    for (int64_t i = 0; i < notes->count; i++) {
+        RETURN_IF_ERROR(mesh_add_note(draft, "%s", notes->name[i]));
+    }
+    RETURN_IF_ERROR(mesh_find_dim(draft));
+    RETURN_IF_ERROR(mesh_pick_regions(draft));
+    RETURN_IF_ERROR(build_nodes(draft));
+    RETURN_IF_ERROR(build_cells(draft));
+    RETURN_IF_ERROR(check_coincident(draft));
+    return mesh_build_facets(draft);
+}
+
 enum status mesh_build(struct mesh *mesh, const struct msh *msh, const struct mesh_options *options,
                        struct error *error)
 {
-    enum status status = STATUS_OK;
     struct mesh_draft draft = {.mesh = mesh, .msh = msh, .options = options, .error = error};
     *mesh = (struct mesh){0};
-    for (int64_t i = 0; i < msh->notes.count; i++) {
-        TRY(mesh_add_note(&draft, "%s", msh->notes.name[i]));
-    }
-    TRY(mesh_find_dim(&draft));
-    TRY(mesh_pick_regions(&draft));
-    TRY(build_nodes(&draft));
-    TRY(build_cells(&draft));
-    TRY(check_coincident(&draft));
-    TRY(mesh_build_facets(&draft));
-done:
+    enum status status = build(&draft);
     FREE_ALL(draft.region_of, draft.node_of, draft.origin);
     if (status != STATUS_OK) {
         mesh_free(mesh);

@@ -309,13 +309,18 @@ static enum status read_lines(struct reader *reader, struct error *error)
     return STATUS_OK;
 }
 
+static enum status read_all(struct reader *reader, int descriptor, struct error *error)
+{
+    RETURN_IF_ERROR(input_open(&reader->input, reader->stream, descriptor, error));
+    return read_lines(reader, error);
+}
+
 /* Read a stream. Unless `why` is NULL, a fault behind some complete sections is stored there and is not an
  * error. */
 static enum status read_stream(struct stream *stream, int descriptor, const char *name, struct error *why,
                                struct error *error)
 {
     struct reader reader = {.stream = stream, .crc = 0};
-    enum status status = STATUS_OK;
     stream_init(stream);
     /* Numbers are read in the C locale, whatever the program that calls us has set. */
     locale_t c_locale = newlocale(LC_ALL_MASK, "C", (locale_t)0);
@@ -323,9 +328,7 @@ static enum status read_stream(struct stream *stream, int descriptor, const char
         return fail_memory(error, name);
     }
     locale_t previous = uselocale(c_locale);
-    TRY(input_open(&reader.input, stream, descriptor, error));
-    TRY(read_lines(&reader, error));
-done:
+    enum status status = read_all(&reader, descriptor, error);
     if (status == STATUS_INPUT && why != NULL && stream->section_count > 0) {
         *why = *error;
         status = STATUS_OK;

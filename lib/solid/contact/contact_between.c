@@ -351,17 +351,16 @@ enum status contact_between_build(const struct boundary_averages *points,
                                   double stiffness, const double *own, const double *other, bool far,
                                   struct contact *contact, bool *any, struct error *error)
 {
-    enum status status;
     *contact = (struct contact){.dim = dim, .count = points->count, .points = points, .averages = averages};
-    TRY(NEW_ARRAY(&contact->between, 1, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&contact->between, 1, error));
     struct contact_between *between = contact->between;
     between->per_facet = per_facet;
     between->sign = sign;
     between->opposite = *opposite;
     *opposite = (struct opposite){0};
     between->leverage = longest_row(points) + longest_row(&between->opposite.rows);
-    TRY(contact_allocate(contact, stiffness, error));
-    TRY(allocate(contact, node_count * dim, error));
+    RETURN_IF_ERROR(contact_allocate(contact, stiffness, error));
+    RETURN_IF_ERROR(allocate(contact, node_count * dim, error));
     for (int64_t p = 0; p < contact->count; p++) {
         between->part[p] = -1;
         for (int64_t k = p - p % per_facet; k < p - p % per_facet + per_facet; k++) {
@@ -376,7 +375,5 @@ enum status contact_between_build(const struct boundary_averages *points,
     }
     memcpy(contact->rest, points->position, (size_t)(contact->count * dim) * sizeof *contact->rest);
     *any = begin(contact, own, other, far);
-done:
-    opposite_free(opposite);
-    return status;
+    return STATUS_OK;
 }

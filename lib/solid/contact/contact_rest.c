@@ -53,6 +53,11 @@ static double facet_weight(const struct facets *facets, int64_t first, int at)
     return vector_length(3, across) / (size2 * vector_dot(3, edge[1], edge[1]));
 }
 
+static void facets_free(struct facets *facets)
+{
+    FREE_ALL(facets->normal, facets->rim);
+}
+
 static enum status find_normals(struct facets *facets, struct error *error)
 {
     const struct boundary_averages *points = facets->points, *averages = facets->averages;
@@ -83,12 +88,10 @@ enum status contact_rest_resolved(int dim, const struct boundary_averages *point
                                   const struct boundary_averages *averages, const double *X, bool *resolved,
                                   struct error *error)
 {
-    enum status status;
-    struct facets facets = {dim, points, averages, X, NULL, NULL};
-    int64_t *average = NULL; /* points: of the corner */
+    FREED_BY(facets_free) struct facets facets = {dim, points, averages, X, NULL, NULL};
     double rough = 0.0, sum = 0.0, length = 0.0;
-    TRY(find_normals(&facets, error));
-    TRY(NEW_ARRAY(&average, points->count, error));
+    RETURN_IF_ERROR(find_normals(&facets, error));
+    NEW_SCRATCH(int64_t, average, points->count, error); /* of the corner */
     for (int64_t a = 0; a < averages->count; a++) {
         for (int64_t s = averages->sample_ptr[a]; s < averages->sample_ptr[a + 1]; s++) {
             int64_t p = averages->sample_point[s];
@@ -105,9 +108,7 @@ enum status contact_rest_resolved(int dim, const struct boundary_averages *point
         length += known ? 2.0 * vector_distance(dim, corner_of(&facets, p), corner_of(&facets, next)) : 0.0;
     }
     *resolved = rough <= most_rough * sum || sum <= flat * length;
-done:
-    FREE_ALL(facets.normal, facets.rim, average);
-    return status;
+    return STATUS_OK;
 }
 
 /* Heights of a point's facet corners, except those on a rim, where the boundary is taken to continue as at
@@ -158,11 +159,9 @@ static enum status raise_points(int dim, const struct boundary_averages *points,
                                 const struct boundary_averages *averages, const double *X, double *rest,
                                 struct error *error)
 {
-    enum status status;
-    struct facets facets = {dim, points, averages, X, NULL, NULL};
-    struct heights *heights = NULL;
-    TRY(find_normals(&facets, error));
-    TRY(NEW_ARRAY(&heights, points->count, error));
+    FREED_BY(facets_free) struct facets facets = {dim, points, averages, X, NULL, NULL};
+    RETURN_IF_ERROR(find_normals(&facets, error));
+    NEW_SCRATCH(struct heights, heights, points->count, error);
     measure_heights(&facets, heights);
     for (int64_t a = 0; a < averages->count; a++) {
         for (int64_t s = averages->sample_ptr[a]; s < averages->sample_ptr[a + 1] && !facets.rim[a]; s++) {
@@ -173,9 +172,7 @@ static enum status raise_points(int dim, const struct boundary_averages *points,
                        rest + p * dim);
         }
     }
-done:
-    FREE_ALL(facets.normal, facets.rim, heights);
-    return status;
+    return STATUS_OK;
 }
 
 enum status contact_rest_heights(int dim, const struct boundary_averages *points,

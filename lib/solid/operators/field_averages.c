@@ -67,17 +67,15 @@ static void copy_rows(const struct copy *copy, struct sparse *matrix)
 enum status field_averages_copy(const struct field_averages_input *input, const bool *wanted, int64_t first,
                                 int64_t last, struct sparse *matrix, struct error *error)
 {
-    enum status status;
     struct copy copies[2] = {{0}};
-    int64_t edges = input->tables[0].row_count, rows = edges + input->tables[1].row_count;
-    int64_t *length = NULL, entries = 0;
+    int64_t edges = input->tables[0].row_count, rows = edges + input->tables[1].row_count, entries = 0;
     *matrix = (struct sparse){0};
-    TRY(NEW_ARRAY(&length, rows, error));
+    NEW_SCRATCH(int64_t, length, rows, error);
+    NEW_SCRATCH(int64_t, place, rows, error);
     for (int k = 0; k < 2; k++) {
         const struct average_table *table = &input->tables[k];
-        copies[k] =
-            (struct copy){input, table, wanted, first, last, k * edges, NULL, k == 0 && input->lets_go};
-        TRY(NEW_ARRAY(&copies[k].place, table->row_count, error));
+        copies[k] = (struct copy){
+            input, table, wanted, first, last, k * edges, place + k * edges, k == 0 && input->lets_go};
         for (int64_t r = 0; r < table->row_count; r++) {
             copies[k].place[table->order[r]] = r;
         }
@@ -86,15 +84,13 @@ enum status field_averages_copy(const struct field_averages_input *input, const 
     for (int64_t r = 0; r < rows; r++) {
         entries += length[r];
     }
-    TRY(sparse_new(rows, input->node_count, entries, matrix, error));
+    RETURN_IF_ERROR(sparse_new(rows, input->node_count, entries, matrix, error));
     for (int64_t r = 0; r < rows; r++) {
         matrix->ptr[r + 1] = matrix->ptr[r] + length[r];
     }
     copy_rows(&copies[0], matrix);
     copy_rows(&copies[1], matrix);
-done:
-    FREE_ALL(length, copies[0].place, copies[1].place);
-    return status;
+    return STATUS_OK;
 }
 
 /* Set of_use: the rows that each cell uses, edges, then vertices, then boundary faces. */
