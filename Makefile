@@ -152,5 +152,6 @@ clean:
 # For files to be made whenever they are asked for.
 always:
 
-include $(wildcard pipelines/*.mk)
+include pipelines/hard.mk # what others depend on
+include $(filter-out pipelines/hard.mk,$(wildcard pipelines/*.mk))
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)
