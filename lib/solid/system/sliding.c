@@ -37,8 +37,10 @@ static int compare_facets(const void *left, const void *right)
 
 void sliding_sort(struct sliding *sliding, int64_t first, int64_t sides)
 {
-    qsort(sliding->facet + first, (size_t)(sliding->facet_count - first), sizeof *sliding->facet,
-          compare_facets);
+    if (sliding->facet_count > first) {
+        qsort(sliding->facet + first, (size_t)(sliding->facet_count - first), sizeof *sliding->facet,
+              compare_facets);
+    }
     sliding->side_count += (int32_t)sides;
 }
 
