@@ -243,12 +243,14 @@ double nodal_volume_pressure(const struct body *body, int64_t point)
 {
     const struct nodal_volumes *volumes = &body->volumes;
     int vertices = body->dim + 1;
-    double sum = 0.0, slope = is_logarithmic(body, point) ? 1.0 / body->J[point] : 1.0;
+    double sum = 0.0;
     for (int64_t k = point * vertices; k < (point + 1) * vertices; k++) {
         int32_t a = volumes->of_point[k];
         sum += volumes->share[k] * volumes->pressure[a] * (volumes->slope != NULL ? volumes->slope[a] : 1.0);
     }
-    return sum / body->weight[point] + slope * direct(body, point);
+    return sum / body->weight[point] +
+           direct(body, point) *
+               material_volume_slope(&body->materials[body->material[point]], body->J[point]);
 }
 
 double nodal_volume_energy(const struct body *body, int64_t point)

@@ -120,24 +120,6 @@ static enum status match_uses(const struct field_averages_input *input, struct f
     return STATUS_OK;
 }
 
-/* The uses of each row. */
-static enum status list_uses(int dim, struct field_averages *averages, struct error *error)
-{
-    int64_t rows = averages->row_count;
-    RETURN_IF_ERROR(NEW_ARRAY(&averages->use_ptr, rows + 2, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&averages->use, averages->use_count, error));
-    for (int64_t i = 0; i < averages->use_count; i++) {
-        averages->use_ptr[averages->of_use[i] / VECTOR_STRIDE(dim) + 2]++;
-    }
-    for (int64_t r = 0; r < rows; r++) {
-        averages->use_ptr[r + 2] += averages->use_ptr[r + 1];
-    }
-    for (int64_t i = 0; i < averages->use_count; i++) {
-        averages->use[averages->use_ptr[averages->of_use[i] / VECTOR_STRIDE(dim) + 1]++] = (int32_t)i;
-    }
-    return STATUS_OK;
-}
-
 void field_averages_uses(const struct field_averages *averages, int dim, int64_t first, int64_t last,
                          int64_t begin[USE_KINDS], int64_t end[USE_KINDS])
 {
@@ -151,20 +133,20 @@ void field_averages_uses(const struct field_averages *averages, int dim, int64_t
     end[USE_FACES] = faces + field_averages_face(averages, last);
 }
 
-/* Number the parts of block b by their first uses, from `count` on: part_of_use and the lengths of the lists
- * of rows, in part_ptr from its third entry on. number[row_count]: scratch, below `count`. Returns the next
- * one. */
+/* Number the parts of block b by their first uses, from `count` on, and set part_of_use. row_of_use,
+ * row_of_part: row of each; number[row_count]: scratch, below `count`. Returns the next number. */
 static int64_t number_parts(const struct field_averages_input *input, struct field_averages *averages,
-                            int64_t b, int64_t count, int64_t *number)
+                            int64_t b, int64_t count, const int32_t *row_of_use, int32_t *row_of_part,
+                            int64_t *number)
 {
     int64_t begin[USE_KINDS], end[USE_KINDS], first = averages->part_first[b] = count;
     field_averages_uses(averages, input->dim, input->block_first[b], input->block_first[b + 1], begin, end);
     for (int kind = 0; kind < USE_KINDS; kind++) {
         for (int64_t i = begin[kind]; i < end[kind]; i++) {
-            int64_t row = averages->of_use[i] / VECTOR_STRIDE(input->dim);
+            int32_t row = row_of_use[i];
             if (number[row] < first) {
-                number[row] = count++;
-                averages->part_ptr[row + 2]++;
+                number[row] = count;
+                row_of_part[count++] = row;
             }
             averages->part_of_use[i] = (uint16_t)(number[row] - first);
         }
@@ -172,45 +154,28 @@ static int64_t number_parts(const struct field_averages_input *input, struct fie
     return count;
 }
 
-/* Put the parts of block b into the lists of their rows. */
-static void put_parts(const struct field_averages_input *input, struct field_averages *averages, int64_t b)
+/* The uses of each row, and the parts of each block and row. */
+static enum status list_uses(const struct field_averages_input *input, struct field_averages *averages,
+                             struct error *error)
 {
-    int64_t begin[USE_KINDS], end[USE_KINDS], next = averages->part_first[b];
-    field_averages_uses(averages, input->dim, input->block_first[b], input->block_first[b + 1], begin, end);
-    for (int kind = 0; kind < USE_KINDS; kind++) {
-        for (int64_t i = begin[kind]; i < end[kind]; i++) {
-            int64_t row = averages->of_use[i] / VECTOR_STRIDE(input->dim);
-            if (averages->part_first[b] + averages->part_of_use[i] == next) {
-                averages->part[averages->part_ptr[row + 1]++] = (int32_t)next++;
-            }
-        }
-    }
-}
-
-/* The parts of each block and of each row. */
-static enum status list_parts(const struct field_averages_input *input, struct field_averages *averages,
-                              struct error *error)
-{
-    int64_t rows = averages->row_count, blocks = input->block_count, count = 0;
+    int64_t uses = averages->use_count, rows = averages->row_count, blocks = input->block_count, count = 0;
+    NEW_SCRATCH(int32_t, row_of_use, uses, error);
+    NEW_SCRATCH(int32_t, row_of_part, uses, error);
     NEW_SCRATCH(int64_t, number, rows, error);
+    for (int64_t i = 0; i < uses; i++) {
+        row_of_use[i] = averages->of_use[i] / VECTOR_STRIDE(input->dim);
+    }
+    RETURN_IF_ERROR(lists_by_row(uses, 1, row_of_use, rows, &averages->use_ptr, &averages->use, error));
     RETURN_IF_ERROR(NEW_ARRAY(&averages->part_first, blocks + 1, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&averages->part_of_use, averages->use_count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&averages->part_ptr, rows + 2, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&averages->part_of_use, uses, error));
     memset(number, -1, (size_t)rows * sizeof *number);
     averages->block_count = blocks;
     for (int64_t b = 0; b < blocks; b++) {
-        count = number_parts(input, averages, b, count, number);
+        count = number_parts(input, averages, b, count, row_of_use, row_of_part, number);
     }
     averages->part_first[blocks] = count;
-    for (int64_t r = 0; r < rows; r++) {
-        averages->part_ptr[r + 2] += averages->part_ptr[r + 1];
-    }
-    RETURN_IF_ERROR(NEW_ARRAY(&averages->part, count, error));
     RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(&averages->part_force, count * input->dim + 1, error));
-    for (int64_t b = 0; b < blocks; b++) {
-        put_parts(input, averages, b);
-    }
-    return STATUS_OK;
+    return lists_by_row(count, 1, row_of_part, rows, &averages->part_ptr, &averages->part, error);
 }
 
 int64_t field_averages_face(const struct field_averages *averages, int64_t q)
@@ -237,8 +202,7 @@ enum status field_averages_build(const struct field_averages_input *input, struc
     RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(&averages->force, rows * stride, error));
     RETURN_IF_ERROR(NEW_ARRAY(&averages->of_use, uses, error));
     RETURN_IF_ERROR(match_uses(input, averages, error));
-    RETURN_IF_ERROR(list_uses(input->dim, averages, error));
-    return list_parts(input, averages, error);
+    return list_uses(input, averages, error);
 }
 
 void field_averages_free(struct field_averages *averages)
