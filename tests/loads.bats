@@ -195,6 +195,29 @@ immersed() {
         END { print sqrt(worst) / (0.05 * -s); exit !(NR == 125 && worst < (1e-4 * 0.05 * s)^2) }'
 }
 
+@test "a pressure on one side only, whose rim has no potential: the closed form, up to twice the shear modulus" {
+    for case in '2 .3 1' '2 .45 2' '2 .49 1.5' '3 .45 1'; do
+        read -r dim nu share <<< "$case"
+        cloud -d "$dim" -k jittered --jitter 0.12 -n 7 --seed 3 --box 0,0.1,0,0.1$([ "$dim" = 2 ] || echo ,0,0.1) 2> note | shapefn > body.mts 2> note
+        { block quasi-static | sed "s/dim = 2/dim = $dim/; s/^nu = .*/nu = $nu/"; for axis in x y z; do
+            [ $axis$dim = z2 ] || printf '[displacement %s]\nfacets = %smin\nnormal = 0\n' $axis $axis; done
+            awk -v nu="$nu" -v share="$share" 'BEGIN { printf "[pressure end]\nfacets = xmax\nvalue = %.12g\n", share * 1500 / (1 + nu) }'
+            printf '[solver]\ntolerance = 1e-7\nmax_steps = 500\n'; } > end.scene
+        mtled -q end.scene body.mts > u.dat 2> note
+        # Stretches a along the pressure and b across it: of (mu J^(-5/3) dev B + kappa (J - 1)) the axial part is -p, the others are 0.
+        paste -d ' ' <(rows nodes.x u.dat) <(rows u u.dat) | awk -v dim="$dim" -v nu="$nu" -v share="$share" '
+            function stress(along,    J, c, trace) { c = dim == 3 ? b : 1; J = a * b * c; trace = a * a + b * b + c * c
+                return J ^ (-5 / 3) * ((along ? a * a : b * b) - trace / 3) + 2 * (1 + nu) / 3 / (1 - 2 * nu) * (J - 1) }
+            BEGIN { a = b = 1
+                for (i = 0; i < 60; i++) { f = stress(1) + share; g = stress(0); h = 1e-6
+                    a += h; fa = (stress(1) + share - f) / h; ga = (stress(0) - g) / h; a -= h
+                    b += h; fb = (stress(1) + share - f) / h; gb = (stress(0) - g) / h; b -= h
+                    det = fa * gb - fb * ga; a -= 0.5 * (f * gb - g * fb) / det; b -= 0.5 * (fa * g - ga * f) / det } }
+            { for (k = 1; k <= dim; k++) { d = $(dim + k) - ((k == 1 ? a : b) - 1) * $k; worst = d * d > worst ? d * d : worst } }
+            END { print dim, nu, share, a, b, sqrt(worst) / 0.1; exit !(NR == 7 ^ dim && worst < (2e-6 * 0.1) ^ 2) }'
+    done
+}
+
 @test "a volume that grows by half, nearly incompressible: the closed form, by each volumetric energy" {
     cloud -d 3 -k jittered --jitter 0.2 -n 5 --box 0,0.1,0,0.1,0,0.1 | shapefn > cube.mts 2> note
     block quasi-static | sed 's/dim = 2/dim = 3/; s/^nu = .*/nu = 0.49/' > head

@@ -99,7 +99,11 @@ static enum statics_outcome iterate(struct newton *n, struct error *error)
             newton_estimate(n);
         }
         newton_note_leaving(n);
-        if (newton_ends(n, stuck, &outcome) && (outcome != STATICS_CONVERGED || !goes_on(n, error))) {
+        bool ends = newton_ends(n, stuck, &outcome, error);
+        if (n->failure != STATUS_OK) {
+            return STATICS_STOPPED;
+        }
+        if (ends && (outcome != STATICS_CONVERGED || !goes_on(n, error))) {
             return outcome;
         }
         if (!newton_tell(n)) {

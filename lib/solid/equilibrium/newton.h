@@ -4,10 +4,11 @@
  * The load grows in increments. At each of them the energy of the body and its loads is replaced by its
  * quadratic model at the present state; that of contacts, whose evaluation costs little, is not. Conjugate
  * gradients with the preconditioner (preconditioner.h) lower the sum of both, by one product of the stiffness
- * an iteration: a difference of two forces (Steihaug 1983; the directions of Polak and Ribiere 1969, as
- * contacts bend the model). A few steps in a row may raise the energy before it must be lower (Chamberlain et
- * al. 1982); a step in which a cell collapses is halved. The multipliers of contacts advance within a step,
- * those of nodal pressures after it. Error estimate: equations (27) and (28) of lib/README.md. */
+ * an iteration: a difference of two forces (Steihaug 1983; along directions conjugate to the last few, as
+ * following pressures may have no potential: Saad 2003, 6.4). A few steps in a row may raise the energy
+ * before it must be lower (Chamberlain et al. 1982); a step in which a cell collapses is halved. The
+ * multipliers of contacts advance within a step, those of nodal pressures after it. Error estimate: equations
+ * (27) and (28) of lib/README.md. */
 #pragma once
 
 #include "solid/equilibrium/statics.h"

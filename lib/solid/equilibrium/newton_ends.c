@@ -9,8 +9,10 @@
  * from falling. */
 static const double most_hovering = 1e-3;
 /* A body that has moved by this share of its largest displacement has not come to its end: a slender one that
- * has buckled may turn for long, by small steps. Nor has one whose load has grown by this share. */
+ * has buckled may turn for long, by small steps; but one that has gone ten times as far goes round in
+ * circles. Nor has one whose load has grown by this share. */
 static const double moves_on = 0.1, least_growth = 1e-3;
+static const int64_t most_moves = 100; /* in a row */
 /* The pressures are augmented after steps shorter than this, by the largest displacement. */
 static const double most_length = 0.1;
 static const int64_t most_vain = 12; /* corrections in which the error has not halved */
@@ -91,9 +93,11 @@ static int64_t note_progress(struct newton *n)
         n->product[i] = n->u[i] - n->marked[i];
     }
     bool moved = newton_longest(n, n->product, NULL) > moves_on * report->move && !newton_held_by_friction(n);
-    if (n->load > n->best_load + least_growth || report->steps == 1 || halved || moved) {
+    bool better = n->load > n->best_load + least_growth || report->steps == 1 || halved;
+    n->moves = better ? 0 : n->moves + moved;
+    if (better || (moved && n->moves <= most_moves)) {
         n->best_load = n->load;
-        n->best_error = report->error;
+        n->best_error = better ? report->error : n->best_error;
         memcpy(n->marked, n->u, (size_t)n->size * sizeof *n->u);
         n->best_step = report->steps;
     }
@@ -101,12 +105,12 @@ static int64_t note_progress(struct newton *n)
 }
 
 /* Whether u is the equilibrium at this load. */
-static bool is_found(struct newton *n, bool vain)
+static bool is_found(struct newton *n, bool vain, struct error *error)
 {
     struct statics_report *report = n->report;
     double most = n->options->tolerance;
     if ((report->error <= most || (vain && isinf(n->lowest))) && !n->judged) {
-        newton_judge_stability(n);
+        n->failure = newton_judge_stability(n, error);
         n->judged = true;
         newton_estimate(n);
     }
@@ -122,11 +126,11 @@ static bool is_found(struct newton *n, bool vain)
     return report->error <= most && pressures && contacts;
 }
 
-bool newton_ends(struct newton *n, bool stuck, enum statics_outcome *outcome)
+bool newton_ends(struct newton *n, bool stuck, enum statics_outcome *outcome, struct error *error)
 {
     int64_t vain = note_progress(n);
     bool holds = n->slides || n->load == n->hold;
-    bool found = n->corrections > 0 && holds && !n->sticks && is_found(n, stuck || vain > most_vain);
+    bool found = n->corrections > 0 && holds && !n->sticks && is_found(n, stuck || vain > most_vain, error);
     bool away = statics_is_away(n->system, n->report, n->body_size);
     *outcome = found                                ? STATICS_CONVERGED
                : away || newton_held_by_friction(n) ? STATICS_AWAY

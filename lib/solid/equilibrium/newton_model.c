@@ -2,6 +2,7 @@
 #include "base/round_off.h"
 #include "base/vector.h"
 #include "solid/equilibrium/newton_private.h"
+#include "solid/preconditioner/frequency.h"
 #include "solid/system/energy.h"
 
 #include <float.h>
@@ -13,7 +14,7 @@ enum { MOST_INNER = 4 };        /* augmentations of contacts in a step */
 enum { MOST_TURNS = 8 };        /* of the search along a direction */
 /* Corrections at a load in which the multipliers of contacts advance in any case; later they do where
  * contacts give way. */
-enum { MOST_AUGMENTATIONS = 24 };
+enum { MOST_AUGMENTATIONS = 8 };
 /* What is left of the gradient's norm when the multipliers of contacts advance. */
 static const double inner_left = 0.3;
 /* The slope at the end of that search, by the one at its start: at most. */
@@ -117,26 +118,24 @@ static double search_along(struct newton *n, double down, double slope, double b
     }
 }
 
-/* search = scaled + what makes it conjugate to the one before (Polak and Ribiere), or scaled alone where that
- * does not lead down; *of_before: the part of the search before. Returns by how much the model falls along
- * it at first. */
-static double turn_search(struct newton *n, double square, double square_before, double *of_before)
+/* search = scaled, made conjugate to the directions before, or scaled alone where that does not lead down.
+ * Returns by how much the model falls along it at first. */
+static double turn_search(struct newton *n)
 {
-    double part = *of_before = 0.0, down = 0.0;
-    if (square_before > 0.0) {
-        part = fmax(0.0, (square - vector_product(n->size, n->before, n->scaled)) / square_before);
+    for (;;) {
+        double down = 0.0;
+        bool alone = n->directions.count == 0;
+        memcpy(n->search, n->scaled, (size_t)n->size * sizeof *n->search);
+        multiply(n, n->search, n->product);
+        newton_conjugate(n);
+        for (int64_t i = 0; i < n->size; i++) {
+            down += n->search[i] * (n->model.smooth[i] + n->model.contact[i]);
+        }
+        if (down > 0.0 || alone) {
+            return down;
+        }
+        newton_forget_directions(n);
     }
-    for (int64_t i = 0; i < n->size; i++) {
-        n->before[i] = n->model.smooth[i] + n->model.contact[i];
-        n->search[i] = n->scaled[i] + part * n->search[i];
-        down += n->search[i] * n->before[i];
-    }
-    if (down > 0.0) {
-        *of_before = part;
-        return down;
-    }
-    memcpy(n->search, n->scaled, (size_t)n->size * sizeof *n->search);
-    return square;
 }
 
 /* Begin the model at u + step: minus its gradient, without the reactions of conditions: under a large
@@ -150,6 +149,7 @@ static void begin_model(struct newton *n)
     }
     constraint_project(&n->preconditioner.constraint, NULL, n->model.smooth);
     memset(n->search, 0, (size_t)n->size * sizeof *n->search);
+    newton_forget_directions(n);
     touch(n, 0.0);
 }
 
@@ -164,11 +164,35 @@ double newton_square(struct newton *n, const struct newton_forces *forces)
     return vector_product(n->size, n->product, n->scaled);
 }
 
+/* Lanczos's matrix of M^-1 K, from conjugate gradients. */
+struct lanczos {
+    int count;
+    double diagonal[MOST_ITERATIONS], off_diagonal[MOST_ITERATIONS];
+    double way; /* of the last step */
+};
+
+/* Add a step: the way along the search direction, and the part of the one before in that. */
+static void add_step(struct lanczos *l, double way, double part)
+{
+    if (l->count > 0) {
+        l->off_diagonal[l->count - 1] = sqrt(part) / l->way;
+    }
+    l->diagonal[l->count] = 1.0 / way + (l->count > 0 ? part / l->way : 0.0);
+    l->way = way;
+    l->count++;
+}
+
+/* The least eigenvalue; INFINITY without steps. */
+static double least_eigenvalue(const struct lanczos *l)
+{
+    return l->count > 0 ? tridiagonal_least(l->count, l->diagonal, l->off_diagonal) : INFINITY;
+}
+
 /* Note how many products have made the residual's square fall to this share, and the least eigenvalue that
  * they show. */
-static void note_products(struct newton *n, int products, double fallen, const struct newton_lanczos *lanczos)
+static void note_products(struct newton *n, int products, double fallen, const struct lanczos *lanczos)
 {
-    double least = newton_lanczos_least(lanczos);
+    double least = least_eigenvalue(lanczos);
     n->lowest = least > 0.0 ? fmin(n->lowest, least) : n->lowest;
     if (products > 0 && fallen < 1.0) {
         double rate = -2.0 * products / log(fallen);
@@ -177,16 +201,28 @@ static void note_products(struct newton *n, int products, double fallen, const s
     }
 }
 
-/* Go along the search direction from u + step to the minimum of the model, by `most` times it at most.
- * Returns the way. The model falls by `down` at first. */
+/* Go along the search direction from u + step to the minimum of the model, by `most` times it at most, and
+ * keep it. Returns the way. The model falls by `down` at first. */
 static double lower(struct newton *n, double down, double most)
 {
-    multiply(n, n->search, n->product);
-    double way = search_along(n, down, vector_product(n->size, n->search, n->model.smooth),
-                              vector_product(n->size, n->search, n->product), most);
+    double curvature = vector_product(n->size, n->search, n->product);
+    double *lost = n->system->contact_count > 0 ? n->scaled : NULL;
+    if (lost != NULL) {
+        memcpy(lost, n->model.contact, (size_t)n->size * sizeof *lost);
+    }
+    double way = search_along(n, down, vector_product(n->size, n->search, n->model.smooth), curvature, most);
     for (int64_t i = 0; i < n->size; i++) {
         n->step[i] += way * n->search[i];
         n->model.smooth[i] -= way * n->product[i];
+    }
+    if (lost != NULL) {
+        for (int64_t i = 0; i < n->size; i++) {
+            lost[i] = (lost[i] - n->model.contact[i]) / way;
+        }
+        curvature += vector_product(n->size, n->search, lost);
+    }
+    if (curvature > 0.0) {
+        newton_keep_direction(n, n->search, lost, curvature);
     }
     return way;
 }
@@ -199,15 +235,16 @@ static void continue_last(struct newton *n, double most)
     double down = vector_product(n->size, n->search, n->model.smooth) +
                   vector_product(n->size, n->search, n->model.contact);
     if (down > 0.0) {
+        multiply(n, n->search, n->product);
         (void)lower(n, down, most);
     }
 }
 
 bool newton_solve_model(struct newton *n, double of_last, double share, double radius)
 {
-    double before = 0.0, mark = 0.0;
+    double now = 0.0, mark = 0.0;
     int augmentations = n->corrections < MOST_AUGMENTATIONS || n->gives_way ? MOST_INNER : 0;
-    struct newton_lanczos lanczos = {0};
+    struct lanczos lanczos = {0};
     begin_model(n);
     if (of_last > 0.0) {
         continue_last(n, of_last);
@@ -215,12 +252,14 @@ bool newton_solve_model(struct newton *n, double of_last, double share, double r
     double length = newton_longest(n, n->step, NULL);
     double none = n->report->move <= n->round_off ? n->round_off : DBL_EPSILON * n->body_size;
     for (int k = 0; k < MOST_ITERATIONS; k++) {
-        double now = scale_gradient(n);
+        now = scale_gradient(n);
         n->square = k == 0 ? now : n->square;
         mark = k == 0 ? now : mark;
         if (n->system->contact_count > 0 && now < inner_left * inner_left * mark && augmentations > 0) {
             augmentations--;
             system_augment_contacts(n->system);
+            touch(n, 0.0);
+            newton_descend_again(n);
             touch(n, 0.0);
             now = mark = scale_gradient(n);
         }
@@ -229,17 +268,16 @@ bool newton_solve_model(struct newton *n, double of_last, double share, double r
             note_products(n, k, now / n->square, &lanczos);
             return true;
         }
-        double part, down = turn_search(n, now, before, &part);
+        double down = turn_search(n);
         double most = (radius - length) / newton_longest(n, n->search, NULL);
         double way = lower(n, down, most);
         if (way >= most) {
             n->falls |= vector_product(n->size, n->search, n->product) < 0.0;
             return false;
         }
-        newton_lanczos_add(&lanczos, way, part);
-        before = now;
+        add_step(&lanczos, way, fmax(0.0, n->directions.part));
         length = newton_longest(n, n->step, NULL);
     }
-    note_products(n, MOST_ITERATIONS, before / n->square, &lanczos);
+    note_products(n, MOST_ITERATIONS, now / n->square, &lanczos);
     return !newton_held_by_friction(n) || n->settled;
 }

@@ -11,6 +11,25 @@ struct newton_forces {
     double least_jacobian; /* of a cell */
 };
 
+enum { NEWTON_MOST_ITERATIONS = 500 }; /* of conjugate gradients */
+
+/* Search directions that are kept: the next one is made conjugate to them, move_k . K move = 0, so that what
+ * they have lowered stays so. Where K is symmetric the last one would do, but for the round-off of
+ * differences of forces. At the rim of a following pressure it is not, and more are kept (Saad, Iterative
+ * Methods for Sparse Linear Systems, 2003, 6.4: direct incomplete orthogonalisation). */
+enum { NEWTON_DIRECTIONS = 2, NEWTON_DIRECTIONS_UNSYMMETRIC = 5 };
+
+struct newton_directions {
+    int count; /* of directions since they were forgotten; */
+    int most;  /* the last so many are kept, in turns, */
+    int usual; /* usually so many: */
+    double *move[NEWTON_MOST_ITERATIONS];
+    double *product[NEWTON_MOST_ITERATIONS];  /* K move, with the stiffness of all but the contacts; */
+    double *contact[NEWTON_MOST_ITERATIONS];  /* what the forces of contacts lost along it, by the way; */
+    double curvature[NEWTON_MOST_ITERATIONS]; /* move . (product + contact), not 0 */
+    double part; /* of the last one in the search direction that was made conjugate to them */
+};
+
 struct newton {
     struct solid_system *system;
     const struct statics_options *options;
@@ -21,20 +40,21 @@ struct newton {
     struct newton_forces at_u; /* residual at u */
     double *trial;             /* parameters that are tried, */
     struct newton_forces at_trial;
-    double *step;                               /* the minimum of the model, from u; */
-    struct newton_forces model;                 /* and minus the gradient of the model there */
-    double *search, *product, *scaled, *before; /* of the conjugate gradients */
-    double *last;                               /* the last increment's change of u, */
-    double last_change;                         /* and of the load; 0: none yet */
-    double *factor_change;                      /* of the load curves */
-    double spacing, body_size;                  /* mean spacing of the nodes; diagonal of their box, m */
-    double round_off;                           /* see statics_round_off */
-    double load, load_change;                   /* share of the load at u; the next increment, */
-    double most_change;                         /* and its most */
-    bool waits;                                 /* the load, until u is almost in equilibrium */
-    bool collapses;                             /* a cell did in the step that was tried last */
-    double longest_step;                        /* of a node, m */
-    double radius;                              /* bound of a step at each node, m */
+    double *step;                      /* the minimum of the model, from u; */
+    struct newton_forces model;        /* and minus the gradient of the model there */
+    double *search, *product, *scaled; /* of the conjugate gradients */
+    struct newton_directions directions;
+    double *last;              /* the last increment's change of u, */
+    double last_change;        /* and of the load; 0: none yet */
+    double *factor_change;     /* of the load curves */
+    double spacing, body_size; /* mean spacing of the nodes; diagonal of their box, m */
+    double round_off;          /* see statics_round_off */
+    double load, load_change;  /* share of the load at u; the next increment, */
+    double most_change;        /* and its most */
+    bool waits;                /* the load, until u is almost in equilibrium */
+    bool collapses;            /* a cell did in the step that was tried last */
+    double longest_step;       /* of a node, m */
+    double radius;             /* bound of a step at each node, m */
     double *kept; /* where the energy was lowest, the start of steps in a row that have not lowered it, */
     double kept_length; /* the length of the first of them, m, */
     int64_t uphill;     /* their number, */
@@ -58,7 +78,8 @@ struct newton {
     double best_error;     /* since the load has grown, */
     double best_load;      /* to that, */
     double *marked;        /* u then, */
-    int64_t best_step;     /* and when; the error has not halved since */
+    int64_t best_step;     /* and when; the error has not halved since, */
+    int64_t moves;         /* or not for as many such states in a row */
     double *nearest;       /* u of the least error at this load, */
     double nearest_error;  /* which it is; INFINITY: not near equilibrium */
     bool falls;            /* since then a model has had no minimum: the stiffness is negative somewhere */
@@ -71,23 +92,31 @@ struct newton {
 /* The estimated error at which the load grows on. */
 #define NEWTON_ERROR_BETWEEN 0.2
 
-enum { NEWTON_MOST_ITERATIONS = 500 }; /* of conjugate gradients */
 /* By the largest Rayleigh quotient, about 1: a smaller one is within the round-off of differences of forces.
  */
 #define NEWTON_LEAST_TOLD 1e-6
 
-/* Lanczos's matrix of M^-1 K, from conjugate gradients. */
-struct newton_lanczos {
-    int count;
-    double diagonal[NEWTON_MOST_ITERATIONS], off_diagonal[NEWTON_MOST_ITERATIONS];
-    double way; /* of the last step */
-};
+/* ---- newton_directions.c ---- */
 
-/* Add a step: the way along the search direction, and the part of the one before in that. */
-void newton_lanczos_add(struct newton_lanczos *lanczos, double way, double part);
+/* Keep one more: none has been dropped yet. */
+MUST_CHECK enum status newton_more_directions(struct newton *n, struct error *error);
+void newton_free_directions(struct newton *n);
+void newton_forget_directions(struct newton *n);
 
-/* The least eigenvalue; INFINITY without steps. */
-double newton_lanczos_least(const struct newton_lanczos *lanczos);
+/* How many directions are kept; the place of the one that came `before` others. */
+int newton_directions_kept(const struct newton_directions *directions);
+int newton_direction(const struct newton_directions *directions, int before);
+
+/* Make n->search conjugate to the directions kept, and n->product, K times it, that of the result. */
+void newton_conjugate(struct newton *n);
+
+/* Keep a direction, K times which is n->product, and what the forces of contacts lost along it, by the way
+ * (NULL: not wanted). */
+void newton_keep_direction(struct newton *n, const double *move, const double *lost, double curvature);
+
+/* After the multipliers of contacts have advanced, go along the directions kept to the minimum of the model:
+ * no product is needed. n->model.contact is then an estimate. */
+void newton_descend_again(struct newton *n);
 
 /* ---- newton_model.c ---- */
 
@@ -150,16 +179,18 @@ bool newton_has_pressures(const struct newton *n);
 /* Estimate the error of u, with the residual of the multipliers that were advanced. */
 void newton_estimate(struct newton *n);
 
-/* Whether the run at this load ends, and its outcome. stuck: no step from u is admitted. */
-bool newton_ends(struct newton *n, bool stuck, enum statics_outcome *outcome);
+/* Whether the run at this load ends, and its outcome, or n->failure. stuck: no step from u is admitted. */
+bool newton_ends(struct newton *n, bool stuck, enum statics_outcome *outcome, struct error *error);
 
 /* ---- newton_stability.c ---- */
 
 /* The least eigenvalue of M^-1 K at u, into n->lowest, and whether u is stable, into system->stability:
  * conjugate gradients on a pseudo-random residual meet a direction of negative stiffness, if there is one.
  * Until they have, they reduce the residual along it by nothing: their polynomial is 1 at 0, its roots are
- * positive. So there is none once the residual's square, r . M^-1 r, is less than the share of one mode. */
-void newton_judge_stability(struct newton *n);
+ * positive. So there is none once the residual's square, r . M^-1 r, is less than the share of one mode. Of a
+ * K that is not symmetric, such a direction says nothing: the eigenvalues in the space that was searched,
+ * once the residual is that small, say whether one has a negative real part. STATUS_SYSTEM: memory. */
+MUST_CHECK enum status newton_judge_stability(struct newton *n, struct error *error);
 
 /* Note in system->stability where the body leaves a state near equilibrium, at the same load, by more than
  * the error of that state, after a model without a minimum. Not with contacts, by whose changes models have

@@ -9,11 +9,15 @@ enum status newton_allocate(struct newton *n, struct error *error)
 {
     double **vectors[] = {&n->at_u.smooth,  &n->at_u.contact,  &n->at_trial.smooth, &n->at_trial.contact,
                           &n->model.smooth, &n->model.contact, &n->trial,           &n->step,
-                          &n->search,       &n->product,       &n->scaled,          &n->before,
-                          &n->last,         &n->kept,          &n->nearest,         &n->marked};
+                          &n->search,       &n->product,       &n->scaled,          &n->last,
+                          &n->kept,         &n->nearest,       &n->marked};
     RETURN_IF_ERROR(preconditioner_build(n->system, true, &n->preconditioner, error));
     for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++) {
         RETURN_IF_ERROR(NEW_ARRAY(vectors[i], n->size, error));
+    }
+    n->directions.usual = n->system->pressure_count > 0 ? NEWTON_DIRECTIONS_UNSYMMETRIC : NEWTON_DIRECTIONS;
+    while (n->directions.most < n->directions.usual) {
+        RETURN_IF_ERROR(newton_more_directions(n, error));
     }
     return NEW_ARRAY(&n->factor_change, n->system->curve_count, error);
 }
@@ -21,8 +25,9 @@ enum status newton_allocate(struct newton *n, struct error *error)
 void newton_release(struct newton *n)
 {
     FREE_ALL(n->at_u.smooth, n->at_u.contact, n->at_trial.smooth, n->at_trial.contact, n->model.smooth,
-             n->model.contact, n->trial, n->step, n->search, n->product, n->scaled, n->before, n->last,
-             n->kept, n->nearest, n->marked, n->factor_change);
+             n->model.contact, n->trial, n->step, n->search, n->product, n->scaled, n->last, n->kept,
+             n->nearest, n->marked, n->factor_change);
+    newton_free_directions(n);
     preconditioner_free(&n->preconditioner);
 }
 
@@ -62,6 +67,7 @@ enum status newton_visit(void *run, const struct state *state, struct error *err
         {"nearest_error", STATE_NUMBERS, &n->nearest_error, 1},
         {"falls", STATE_FLAGS, &n->falls, 1},
         {"best_step", STATE_COUNTS, &n->best_step, 1},
+        {"moves", STATE_COUNTS, &n->moves, 1},
         {"corrections", STATE_COUNTS, &n->corrections, 1},
         {"frames", STATE_COUNTS, &n->frames, 1},
         {"hold", STATE_NUMBERS, &n->hold, 1},

@@ -205,12 +205,12 @@ void newton_let_slip(struct newton *n)
 
 /* What a correction leaves of the residual's norm: as much as the model's own error, which is about the
  * square of the step's, or half of what the tolerance asks; no less than usual while pressures advance
- * between steps. */
+ * between steps, or yields of friction. */
 static double left_of_correction(const struct newton *n)
 {
     double error = n->report->error, most = fmax(n->options->tolerance, n->round_off / n->report->move);
     double enough = fmax(error, 0.5 * most / error);
-    return error > 0.0 && !body_is_limited(&n->system->body) ? fmin(left, enough) : left;
+    return error > 0.0 && !n->slides && !body_is_limited(&n->system->body) ? fmin(left, enough) : left;
 }
 
 /* The step of the model from u. Where that has no minimum, as friction does not hold the body, the pressures
