@@ -145,7 +145,7 @@ END
             printf '[displacement %s along]\nfacets = %s\ncomponents = %s, free\ncurve = drag.tsv\n' "$name" "$name" "$drag" | sed 's/ along/_along/'
             printf '[displacement %s]\nfacets = %s\ncomponents = free, %s\ncurve = press.tsv\n' "$name" "$name" "$press"
         done
-        printf '[contact round]\nfacets = over\nagainst = under\nfriction = 0.3\n[output]\ngaps = yes\nreactions = yes\n[solver]\ntime_steps = 40\n'; } > two.scene
+        printf '[contact round]\nfacets = over\nagainst = under\nfriction = 0.3\n[output]\ngaps = yes\nreactions = yes\n[solver]\ntime_steps = 80\n'; } > two.scene
     mtled -q two.scene two.mts > u.dat
     awk 'FNR == NR { Q = $1; P = $2; next }
         FNR == 1 { sub(/^-/, "", Q); sub(/^-/, "", P); a = sqrt(4 * P / (3.14159265 * 30000 / 2 / 0.91)); most = 0.3 * 2 * P / (3.14159265 * a); c = a * sqrt(1 - Q / (0.3 * P)) }
