@@ -94,11 +94,11 @@ static void note_direction(struct newton *n, double quotient, struct space *spac
     space->least = fmin(space->least, quotient);
 }
 
-/* Extend the basis by product and scaled, which have this length. All of it is kept where K is not symmetric.
- */
+/* Extend the basis by product and scaled, which have this length. All of it is kept where K may not be
+ * symmetric. */
 static enum status extend(struct newton *n, double length, const struct space *space, struct error *error)
 {
-    if (space->skew >= asymmetric && space->count == n->directions.most) {
+    if (n->system->pressure_count > 0 && space->count == n->directions.most) {
         RETURN_IF_ERROR(newton_more_directions(n, error));
     }
     for (int64_t i = 0; i < n->size; i++) {
