@@ -6,16 +6,24 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum status newton_more_directions(struct newton *n, struct error *error)
+int newton_usual_directions(const struct newton *n)
+{
+    return system_has_potential(n->system) ? NEWTON_DIRECTIONS : NEWTON_DIRECTIONS_UNSYMMETRIC;
+}
+
+enum status newton_keep_directions(struct newton *n, int count, struct error *error)
 {
     struct newton_directions *directions = &n->directions;
-    int k = directions->most++;
-    if (directions->move[k] != NULL) {
-        return STATUS_OK;
+    directions->most = count;
+    for (int k = 0; k < count; k++) {
+        if (directions->move[k] == NULL) {
+            RETURN_IF_ERROR(NEW_ARRAY(&directions->move[k], n->size, error));
+            RETURN_IF_ERROR(NEW_ARRAY(&directions->product[k], n->size, error));
+            RETURN_IF_ERROR(n->system->contact_count > 0 ? NEW_ARRAY(&directions->contact[k], n->size, error)
+                                                         : STATUS_OK);
+        }
     }
-    RETURN_IF_ERROR(NEW_ARRAY(&directions->move[k], n->size, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&directions->product[k], n->size, error));
-    return n->system->contact_count > 0 ? NEW_ARRAY(&directions->contact[k], n->size, error) : STATUS_OK;
+    return STATUS_OK;
 }
 
 void newton_free_directions(struct newton *n)

@@ -22,7 +22,6 @@ enum { NEWTON_DIRECTIONS = 2, NEWTON_DIRECTIONS_UNSYMMETRIC = 5 };
 struct newton_directions {
     int count; /* of directions since they were forgotten; */
     int most;  /* the last so many are kept, in turns, */
-    int usual; /* usually so many: */
     double *move[NEWTON_MOST_ITERATIONS];
     double *product[NEWTON_MOST_ITERATIONS];  /* K move, with the stiffness of all but the contacts; */
     double *contact[NEWTON_MOST_ITERATIONS];  /* what the forces of contacts lost along it, by the way; */
@@ -98,8 +97,9 @@ struct newton {
 
 /* ---- newton_directions.c ---- */
 
-/* Keep one more: none has been dropped yet. */
-MUST_CHECK enum status newton_more_directions(struct newton *n, struct error *error);
+/* How many are kept but by the verdict on stability; and let so many be kept: none has been dropped yet. */
+int newton_usual_directions(const struct newton *n);
+MUST_CHECK enum status newton_keep_directions(struct newton *n, int count, struct error *error);
 void newton_free_directions(struct newton *n);
 void newton_forget_directions(struct newton *n);
 

@@ -98,8 +98,8 @@ static void note_direction(struct newton *n, double quotient, struct space *spac
  * symmetric. */
 static enum status extend(struct newton *n, double length, const struct space *space, struct error *error)
 {
-    if (n->system->pressure_count > 0 && space->count == n->directions.most) {
-        RETURN_IF_ERROR(newton_more_directions(n, error));
+    if (!system_has_potential(n->system) && space->count == n->directions.most) {
+        RETURN_IF_ERROR(newton_keep_directions(n, space->count + 1, error));
     }
     for (int64_t i = 0; i < n->size; i++) {
         n->scaled[i] /= length;
@@ -202,7 +202,7 @@ enum status newton_judge_stability(struct newton *n, struct error *error)
         return fail_memory(error, "eigenvalues");
     }
     RETURN_IF_ERROR(search(n, &space, error));
-    n->directions.most = n->directions.usual;
+    n->directions.most = newton_usual_directions(n);
     RETURN_IF_ERROR(least_real(&space, &n->lowest, error));
     double least = space.skew < asymmetric ? space.least : n->lowest;
     stability->least = 0.0;

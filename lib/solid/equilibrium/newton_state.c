@@ -15,10 +15,7 @@ enum status newton_allocate(struct newton *n, struct error *error)
     for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++) {
         RETURN_IF_ERROR(NEW_ARRAY(vectors[i], n->size, error));
     }
-    n->directions.usual = n->system->pressure_count > 0 ? NEWTON_DIRECTIONS_UNSYMMETRIC : NEWTON_DIRECTIONS;
-    while (n->directions.most < n->directions.usual) {
-        RETURN_IF_ERROR(newton_more_directions(n, error));
-    }
+    RETURN_IF_ERROR(newton_keep_directions(n, newton_usual_directions(n), error));
     return NEW_ARRAY(&n->factor_change, n->system->curve_count, error);
 }
 

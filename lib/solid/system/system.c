@@ -246,6 +246,11 @@ static void add_pressure(const struct solid_system *system, const struct pressur
     }
 }
 
+bool system_has_potential(const struct solid_system *system)
+{
+    return system->pressure_count == 0;
+}
+
 void system_add_loads(const struct solid_system *system, const double *u, double *force)
 {
     int64_t size = system->node_count * system->dim;

@@ -131,6 +131,10 @@ void system_add_contacts(struct solid_system *system, const double *u, double *f
  * change the state. */
 void system_accept(struct solid_system *system);
 
+/* Whether the loads have a potential, so that the stiffness is symmetric: at the rim of a part of the boundary
+ * a following pressure has none. */
+bool system_has_potential(const struct solid_system *system);
+
 /* Whether a contact has friction; functions of friction.h for all contacts; and what friction has dissipated,
  * J (2D: J/m). */
 bool system_has_friction(const struct solid_system *system);
