@@ -112,7 +112,7 @@ static inline int threads_for(const struct envelope *factor)
     return factor->block_count > 1 ? chunks_of(factor->size, ENTRIES_FOR_THREAD).threads : 1;
 }
 
-static enum status lay_out(const int64_t *ptr, const int64_t *column, int64_t width, struct envelope *factor,
+static enum status lay_out(const int64_t *ptr, const int64_t *column, struct envelope *factor,
                            struct error *error)
 {
     NEW_SCRATCH(int64_t, first, factor->n, error);
@@ -120,10 +120,10 @@ static enum status lay_out(const int64_t *ptr, const int64_t *column, int64_t wi
         factor->place[factor->order[i]] = i;
     }
     for (int64_t i = 0; i < factor->n; i++) {
-        int64_t node = factor->order[i] / width;
+        int64_t row = factor->order[i];
         first[i] = i;
-        for (int64_t k = ptr[node]; k < ptr[node + 1]; k++) {
-            int64_t other = factor->place[column[k] * width];
+        for (int64_t k = ptr[row]; k < ptr[row + 1]; k++) {
+            int64_t other = factor->place[column[k]];
             first[i] = other < first[i] ? other : first[i];
         }
     }
@@ -146,7 +146,9 @@ static enum status fill(const int64_t *ptr, const int64_t *column, const double 
     RETURN_IF_ERROR(NEW_ARRAY(&factor->value, factor->size, error));
     for (int64_t i = 0; i < factor->n; i++) {
         for (int64_t k = ptr[i]; k < ptr[i + 1]; k++) {
-            envelope_add(factor, i, column[k], value[k], factor->value);
+            if (factor->place[column[k]] <= factor->place[i]) { /* in the lower triangle */
+                factor->value[factor->at[i] + factor->place[column[k]] * ENVELOPE_GROUP] += value[k];
+            }
         }
     }
     return STATUS_OK;
@@ -236,7 +238,8 @@ bool envelope_is_dropped(const struct envelope *factor, int64_t i)
     return isinf(factor->value[factor->at[factor->order[i]] + i * ENVELOPE_GROUP]);
 }
 
-void envelope_factor(struct envelope *factor, double least, double shift)
+/* value[], which is A, becomes L. */
+static void factorise(struct envelope *factor, double least, double shift)
 {
 #pragma omp parallel for schedule(static, 1) num_threads(threads_for(factor))
     for (int64_t b = 0; b < factor->block_count; b++) {
@@ -262,35 +265,32 @@ static enum status put_last(struct envelope *factor, struct error *error)
     return STATUS_OK;
 }
 
-enum status envelope_begin(int64_t n, const int64_t *ptr, const int64_t *column, int64_t width,
-                           struct envelope *factor, struct error *error)
+/* Order the rows, and set all but value[]. */
+static enum status begin(int64_t n, const int64_t *ptr, const int64_t *column, struct envelope *factor,
+                         struct error *error)
 {
-    int64_t rows = n * width;
-    *factor = (struct envelope){.n = rows};
-    RETURN_IF_ERROR(NEW_ARRAY(&factor->order, rows, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&factor->place, rows, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&factor->at, rows, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&factor->groups, rows, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&factor->scratch, rows, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&factor->block, rows + 1, error));
+    *factor = (struct envelope){.n = n};
+    RETURN_IF_ERROR(NEW_ARRAY(&factor->order, n, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&factor->place, n, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&factor->at, n, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&factor->groups, n, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&factor->scratch, n, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&factor->block, n + 1, error));
     RETURN_IF_ERROR(order_rows(n, ptr, column, factor->order, error));
-    for (int64_t i = rows - 1; i >= 0; i--) {
-        factor->order[i] = factor->order[i / width] * width + i % width;
-    }
-    return lay_out(ptr, column, width, factor, error);
+    return lay_out(ptr, column, factor, error);
 }
 
 enum status envelope_factorise(int64_t n, const int64_t *ptr, const int64_t *column, const double *value,
                                double least, double shift, struct envelope *factor, struct error *error)
 {
-    RETURN_IF_ERROR(envelope_begin(n, ptr, column, 1, factor, error));
+    RETURN_IF_ERROR(begin(n, ptr, column, factor, error));
     RETURN_IF_ERROR(fill(ptr, column, value, factor, error));
-    envelope_factor(factor, fmax(weak_pivot, least), shift);
+    factorise(factor, fmax(weak_pivot, least), shift);
     if (factor->dropped > 0) {
         RETURN_IF_ERROR(put_last(factor, error));
-        RETURN_IF_ERROR(lay_out(ptr, column, 1, factor, error));
+        RETURN_IF_ERROR(lay_out(ptr, column, factor, error));
         RETURN_IF_ERROR(fill(ptr, column, value, factor, error));
-        envelope_factor(factor, least, shift);
+        factorise(factor, least, shift);
     }
     return STATUS_OK;
 }

@@ -38,30 +38,6 @@ MUST_CHECK enum status envelope_factorise(int64_t n, const int64_t *ptr, const i
                                           const double *value, double least, double shift,
                                           struct envelope *factor, struct error *error);
 
-/* The same step by step, for a matrix that is factored again and again. Order n * width rows, whose entries
- * are between all of the `width` rows of r and of column[], and set all but value[], which the caller
- * allocates. */
-MUST_CHECK enum status envelope_begin(int64_t n, const int64_t *ptr, const int64_t *column, int64_t width,
-                                      struct envelope *factor, struct error *error);
-
-/* Whether an entry is in the lower triangle of the reordered matrix. */
-static inline bool envelope_has(const struct envelope *factor, int64_t row, int64_t column)
-{
-    return factor->place[column] <= factor->place[row];
-}
-
-/* matrix[size] += an entry of A, if it is there. */
-static inline void envelope_add(const struct envelope *factor, int64_t row, int64_t column, double value,
-                                double *matrix)
-{
-    if (envelope_has(factor, row, column)) {
-        matrix[factor->at[row] + factor->place[column] * ENVELOPE_GROUP] += value;
-    }
-}
-
-/* value[], which is A, becomes L. */
-void envelope_factor(struct envelope *factor, double least, double shift);
-
 void envelope_free(struct envelope *factor);
 
 /* Whether the row at place i, order[i] of the caller, was dropped. */

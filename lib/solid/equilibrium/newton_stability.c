@@ -1,5 +1,6 @@
 /* Whether an equilibrium is stable. */
 #include "base/memory.h"
+#include "base/round_off.h"
 #include "base/vector.h"
 #include "solid/equilibrium/newton_private.h"
 #include "solid/preconditioner/frequency.h"
@@ -109,6 +110,16 @@ static enum status extend(struct newton *n, double length, const struct space *s
     return STATUS_OK;
 }
 
+/* Whether the conditions leave nothing of a load: they hold the whole body. */
+static bool is_held(struct newton *n, const double *load)
+{
+    memcpy(n->search, load, (size_t)n->size * sizeof *load);
+    constraint_project(&n->preconditioner.constraint, NULL, n->search);
+    constraint_project(&n->preconditioner.constraint, NULL, n->search);
+    return sqrt(vector_product(n->size, n->search, n->search)) <=
+           COARSE_ROUND_OFF * sqrt(vector_product(n->size, load, load));
+}
+
 /* Search until the residual is small, or, with a symmetric K, a quotient is negative. */
 static enum status search(struct newton *n, struct space *space, struct error *error)
 {
@@ -117,7 +128,7 @@ static enum status search(struct newton *n, struct space *space, struct error *e
     newton_forget_directions(n);
     frequency_start(n->product, n->size);
     preconditioner_apply(&n->preconditioner, n->product, n->scaled);
-    double length = sqrt(vector_product(n->size, n->scaled, n->product));
+    double length = is_held(n, n->product) ? 0.0 : sqrt(vector_product(n->size, n->scaled, n->product));
     memset(n->search, 0, (size_t)n->size * sizeof *n->search);
     for (int k = 0; length > 0.0 && !space->searched && !negative && k < NEWTON_MOST_ITERATIONS; k++) {
         RETURN_IF_ERROR(extend(n, length, space, error));

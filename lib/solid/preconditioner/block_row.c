@@ -71,20 +71,15 @@ static double *block_of(struct block_row *row, int dim, int32_t node)
     return block;
 }
 
-/* By `shear`, of `turned` where it is bounded. */
-static const double most_turned = 0.9;
-
 /* Of a domain: with the gradients g, f = F g and c = cof F g of two of its functions, the block between these
- * is shear g . g' I + mixed (c f' + f c') + square c c' + turned (c c' - c' c). In the plane moves that turn
- * F have the stiffness shear +- turned, which is kept above 0: of an indefinite matrix no inverse helps.
- */
+ * is shear g . g' I + mixed (c f' + f c') + square c c' + turned (c c' - c' c). */
 struct tangent {
     double shear, mixed, square, turned;
     double content, share; /* of each nodal volume, and that times the root of k */
 };
 
 /* The tangent of the domain that cell q is in, and F g and cof F g of its functions. */
-static struct tangent find_tangent(const struct body *body, int64_t q, bool bounded, struct domain *domain)
+static struct tangent find_tangent(const struct body *body, int64_t q, struct domain *domain)
 {
     static const double at_rest[9] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
     const struct material *material = &body->materials[body->material[q]];
@@ -106,9 +101,6 @@ static struct tangent find_tangent(const struct body *body, int64_t q, bool boun
     double I1 = vector_dot(9, F, F), shear = domain->weight * mu / cbrt(J * J);
     double content = domain->weight / domain->count;
     double turned = (-shear * I1 / (3.0 * J) + domain->weight * pressure) / J;
-    if (bounded) {
-        turned = fmax(-most_turned * shear, fmin(most_turned * shear, turned));
-    }
     return (struct tangent){.shear = shear,
                             .mixed = -2.0 / 3.0 * shear / J,
                             .square = 5.0 / 9.0 * shear * I1 / (J * J) +
@@ -123,7 +115,7 @@ static void add_domain(const struct body *body, int64_t q, int n, struct domain 
                        struct block_row *row)
 {
     int dim = body->dim;
-    struct tangent t = find_tangent(body, q, row->bounded, domain);
+    struct tangent t = find_tangent(body, q, domain);
     const double *g = domain->gradient[n], *f = domain->along[n], *c = domain->normal[n];
     row->volume += t.content;
     for (int m = 0; m < domain->count; m++) {

@@ -9,13 +9,11 @@
 
 #include "base/status.h"
 
-#include <stdbool.h>
 #include <stdint.h>
 
 struct body;
 
 struct block_row {
-    bool bounded; /* the stiffness against turning F in the plane, from below; set by the caller */
     int64_t count;
     int32_t *node; /* neighbours, in the body's order */
     double *block; /* for each (dim + 1) * dim: K_nm, N/m (2D: N/m2), and below it what E_n is made of */

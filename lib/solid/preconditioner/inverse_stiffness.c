@@ -53,42 +53,69 @@ static void batch_free(struct batch *batch)
     FREE_ALL(batch->row, batch->number, batch->block);
 }
 
-/* The list of the row of place p; `near` is scratch. Returns its length. */
-static int64_t choose(const struct solid_system *system, int64_t p, struct placed *near, int32_t *list)
+/* Nodes near node i of lower number. */
+struct near {
+    int64_t count, capacity;
+    struct placed *list;
+    int64_t *seen; /* of each node: 1 + the last i that has it */
+};
+static void near_free(struct near *near)
+{
+    FREE_ALL(near->list, near->seen);
+}
+
+/* Add those around a node. */
+static enum status add_around(const struct solid_system *system, int64_t i, int64_t node, struct near *near,
+                              struct error *error)
 {
     const struct neighbours *around = system->node_lists;
-    const int32_t *place = system->body.node_place;
-    int64_t i = system->body.node_order[p], count = 0, kept = 0;
-    int dim = system->dim;
-    for (int64_t k = around->ptr[i]; k < around->ptr[i + 1]; k++) {
-        int64_t node = around->idx[k];
-        if (node < i) {
-            near[count++] =
-                (struct placed){vector_distance2(dim, system->X + node * dim, system->X + i * dim), node};
+    int64_t begin = around->ptr[node], end = around->ptr[node + 1];
+    RETURN_IF_ERROR(GROW_ARRAY(&near->list, near->count + end - begin, &near->capacity, error));
+    for (int64_t k = begin; k < end; k++) {
+        int64_t other = around->idx[k];
+        if (other < i && near->seen[other] != i + 1) {
+            const double *x = system->X + other * system->dim;
+            double distance2 = vector_distance2(system->dim, x, system->X + i * system->dim);
+            near->seen[other] = i + 1;
+            near->list[near->count++] = (struct placed){distance2, other};
         }
     }
-    qsort(near, (size_t)count, sizeof *near, compare_placed);
-    for (; kept < count && kept < MOST_ENTRIES - 1; kept++) {
-        list[kept] = place[near[kept].item];
+    return STATUS_OK;
+}
+
+/* The list of the row of place p, by distance: of the nodes around it, and where these are few of those
+ * around them. */
+static enum status choose(const struct solid_system *system, int64_t p, struct near *near, int32_t *list,
+                          int64_t *length, struct error *error)
+{
+    const struct neighbours *around = system->node_lists;
+    int64_t i = system->body.node_order[p], kept = 0;
+    near->count = 0;
+    RETURN_IF_ERROR(add_around(system, i, i, near, error));
+    bool few = near->count < MOST_ENTRIES - 1;
+    for (int64_t k = around->ptr[i]; few && k < around->ptr[i + 1]; k++) {
+        RETURN_IF_ERROR(add_around(system, i, around->idx[k], near, error));
+    }
+    qsort(near->list, (size_t)near->count, sizeof *near->list, compare_placed);
+    for (; kept < near->count && kept < MOST_ENTRIES - 1; kept++) {
+        list[kept] = system->body.node_place[near->list[kept].item];
     }
     list[kept] = (int32_t)p;
-    return kept + 1;
+    *length = kept + 1;
+    return STATUS_OK;
 }
 
 static enum status choose_all(struct batch *batch, struct error *error)
 {
-    const struct neighbours *around = batch->system->node_lists;
-    int64_t most = 0;
-    for (int64_t n = 0; n < batch->system->node_count; n++) {
-        most = around->ptr[n + 1] - around->ptr[n] > most ? around->ptr[n + 1] - around->ptr[n] : most;
-    }
-    NEW_SCRATCH(struct placed, near, most, error);
-    RETURN_IF_ERROR(NEW_ARRAY(&batch->pattern.ptr, batch->count + 1, error));
-    RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(&batch->pattern.idx, batch->count * MOST_ENTRIES, error));
+    FREED_BY(near_free) struct near near = {0};
+    struct lists *pattern = &batch->pattern;
+    RETURN_IF_ERROR(NEW_ARRAY(&near.seen, batch->system->node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&pattern->ptr, batch->count + 1, error));
+    RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(&pattern->idx, batch->count * MOST_ENTRIES, error));
     for (int64_t k = 0; k < batch->count; k++) {
-        int64_t at = batch->pattern.ptr[k];
-        batch->pattern.ptr[k + 1] =
-            at + choose(batch->system, batch->first + k, near, batch->pattern.idx + at);
+        int64_t at = pattern->ptr[k], length;
+        RETURN_IF_ERROR(choose(batch->system, batch->first + k, &near, pattern->idx + at, &length, error));
+        pattern->ptr[k + 1] = at + length;
     }
     return STATUS_OK;
 }

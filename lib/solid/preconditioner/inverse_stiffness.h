@@ -3,7 +3,7 @@
  *
  * The wider the supports, the more vectors of parameters there are whose field nearly vanishes. With a
  * diagonal mass these are slow modes; L removes them, and with blocks also what nearly incompressible
- * materials add. The pattern p of row i of L is i itself and, of the nodes of its support of lower number,
+ * materials add. The pattern p of row i of L is i itself and, of the nodes around it of lower number,
  * the nearest ones. Its blocks are L_ip = (R^-1)_ip, with the Cholesky factor K_pp = R R^T, so that the
  * diagonal blocks of L K L^T are 1. K: stiffness_rows.h. */
 #pragma once

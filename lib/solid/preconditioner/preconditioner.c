@@ -12,8 +12,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Nodes for each field at least. */
-static const int64_t nodes_per_coarse_field = 16;
+/* Nodes across a group at least. */
+enum { NODES_ACROSS_GROUP = 4 };
 /* Unknowns at most where each costs an evaluation: 16 groups in two dimensions and 8 in three. */
 static const int64_t most_unknowns = 96;
 /* Groups at most where the stiffness is assembled: the matrices are dense, and more save no time. */
@@ -22,7 +22,9 @@ static const int64_t most_groups = 128;
 static int64_t group_count(const struct solid_system *system)
 {
     int64_t fields = system->dim + 1, most = most_unknowns / (fields * system->dim);
-    int64_t count = system->node_count / (nodes_per_coarse_field * fields);
+    int64_t nodes = system->dim == 2 ? NODES_ACROSS_GROUP * NODES_ACROSS_GROUP
+                                     : NODES_ACROSS_GROUP * NODES_ACROSS_GROUP * NODES_ACROSS_GROUP;
+    int64_t count = system->node_count / nodes;
     most = system->body.smoothed ? most_groups : most;
     return count < most ? count : most;
 }
@@ -68,10 +70,7 @@ enum status preconditioner_build(struct solid_system *system, bool coarse, struc
     RETURN_IF_ERROR(NEW_ARRAY(&p->stiffness, system->node_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&p->vector, system->node_count * system->dim, error));
     RETURN_IF_ERROR(NEW_ARRAY(&p->force, system->node_count * system->dim, error));
-    if (coarse && system_has_inverse(system)) {
-        RETURN_IF_ERROR(stiffness_factor_begin(system, &p->elements, error));
-    }
-    coarse = coarse && p->elements.body == NULL && system->node_lists != NULL;
+    coarse = coarse && system->node_lists != NULL;
     RETURN_IF_ERROR(coarse_space_build(system->dim, system->node_count, system->X, system->node_lists,
                                        coarse ? group_count(system) : 0, &p->coarse, error));
     RETURN_IF_ERROR(leave_out_held(system, &p->coarse, error));
@@ -99,7 +98,6 @@ void preconditioner_free(struct preconditioner *p)
     constraint_free(&p->constraint);
     coarse_space_free(&p->coarse);
     inverse_factor_free(&p->factor);
-    stiffness_factor_free(&p->elements);
     coarse_rows_free(&p->rows);
     FREE_ALL(p->vector, p->force, p->at_rest, p->rotation, p->stiffness, p->mass, p->body, p->along,
              p->normal, p->across, p->weight, p->stiffness_factor, p->amount, p->contacts);
@@ -154,10 +152,6 @@ static void divide_by_mass(const struct preconditioner *p, const double *x, doub
 /* y = B x; not the same array */
 static void smooth(struct preconditioner *p, const double *x, double *y)
 {
-    if (p->elements.definite) {
-        stiffness_factor_solve(&p->elements, x, y);
-        return;
-    }
     if (p->factor.node_count == 0) {
         divide_by_mass(p, x, y);
         return;
@@ -217,7 +211,6 @@ enum status preconditioner_state(struct preconditioner *p, const struct state *s
         {"stiffness", STATE_NUMBERS, p->stiffness, p->node_count},
         {"weight", STATE_NUMBERS, p->weight, p->coarse.count * p->coarse.count},
         {"body", STATE_NUMBERS, p->body, p->size * p->size},
-        {"elements", STATE_NUMBERS, p->elements.body, p->elements.factor.size},
         {"rotation", STATE_NUMBERS, p->rotation, p->rotation != NULL ? p->node_count * p->dim * p->dim : 0},
         {"along", STATE_NUMBERS, p->along, p->contact_node_count},
         {"normal", STATE_NUMBERS, p->normal, p->contact_node_count * p->dim},

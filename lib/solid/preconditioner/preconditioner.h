@@ -11,30 +11,27 @@
  * G^T)^-1 G f with the rows G. With smoothed cells B = R L^T D^-1 L R^T, with the factor L of
  * inverse_stiffness.h, the rotations R of the nodes since rest, and D by how much the stiffness around each
  * node has changed since; otherwise B = D^-1. For linear systems this is a two-level additive preconditioner
- * with deflated constraints. Any positive definite A is admissible. Plane bodies without contacts have the
- * inverse of stiffness_factor.h alone, up to some size.
+ * with deflated constraints. Any positive definite A is admissible.
  */
 #pragma once
 
 #include "base/state.h"
 #include "solid/preconditioner/coarse_rows.h"
 #include "solid/preconditioner/inverse_stiffness.h"
-#include "solid/preconditioner/stiffness_factor.h"
 #include "solid/system/system.h"
 
 struct preconditioner {
     int dim;
     int64_t node_count;
-    double *stiffness;                /* node_count: that D was set from, N/m (2D: N/m2), */
-    double *at_rest;                  /* and with an inverse factor what it is at rest */
-    double *rotation;                 /* with an inverse factor, node_count * dim * dim: R of each node */
-    double *mass;                     /* node_count: D, N/m (2D: N/m2); with an inverse factor a number */
-    struct inverse_factor factor;     /* node_count 0: none */
-    struct stiffness_factor elements; /* in place of both, or none */
-    double *vector, *force;           /* node_count * dim: scratch */
-    struct constraint constraint;     /* P */
-    struct coarse_space coarse;       /* count 0: none, M = B^-1 */
-    int64_t size;                     /* coarse.count * dim: rows and columns of the coarse matrices */
+    double *stiffness;            /* node_count: that D was set from, N/m (2D: N/m2), */
+    double *at_rest;              /* and with an inverse factor what it is at rest */
+    double *rotation;             /* with an inverse factor, node_count * dim * dim: R of each node */
+    double *mass;                 /* node_count: D, N/m (2D: N/m2); with an inverse factor a number */
+    struct inverse_factor factor; /* node_count 0: none */
+    double *vector, *force;       /* node_count * dim: scratch */
+    struct constraint constraint; /* P */
+    struct coarse_space coarse;   /* count 0: none, M = B^-1 */
+    int64_t size;                 /* coarse.count * dim: rows and columns of the coarse matrices */
     /* Lower triangles, size * size, N/m (2D: N/m2): stiffness along the coarse fields of body, penalties and
      * conditions; of the contact nodes that A counts in (NULL without contacts); Cholesky factor of A. */
     double *body, *contacts, *stiffness_factor;

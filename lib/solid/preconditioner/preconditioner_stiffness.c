@@ -39,10 +39,6 @@ void preconditioner_factorise(struct preconditioner *p, const struct solid_syste
 {
     double keep = kept;
     p->measured = false;
-    if (p->elements.body != NULL) {
-        stiffness_factor_make(&p->elements, p->dim, p->stiffness);
-        return;
-    }
     if (p->contacts != NULL && p->size > 0) {
         memset(p->contacts, 0, (size_t)(p->size * p->size) * sizeof *p->contacts);
         preconditioner_add_contacts(p, system, p->contacts);
@@ -89,7 +85,7 @@ static enum status measure_by_differences(struct preconditioner *p, struct solid
 enum status preconditioner_measure(struct preconditioner *p, struct solid_system *system, const double *u,
                                    int64_t *evaluations, struct error *error)
 {
-    if (p->size == 0 && p->elements.body == NULL && p->rotation == NULL) {
+    if (p->size == 0 && p->rotation == NULL) {
         return STATUS_OK;
     }
     if (system->body.smoothed) {
@@ -98,9 +94,7 @@ enum status preconditioner_measure(struct preconditioner *p, struct solid_system
     if (p->rotation != NULL) {
         RETURN_IF_ERROR(preconditioner_find_rotations(p, &system->body, error));
     }
-    if (p->elements.body != NULL) {
-        RETURN_IF_ERROR(stiffness_factor_take(system, p->stiffness, &p->elements, error));
-    } else if (p->size > 0 && system->body.smoothed) {
+    if (p->size > 0 && system->body.smoothed) {
         RETURN_IF_ERROR(preconditioner_assemble(p, system, error));
     } else if (p->size > 0) {
         RETURN_IF_ERROR(measure_by_differences(p, system, u, error));

@@ -201,9 +201,7 @@ bool system_stiffen_penalties(struct solid_system *system);
 /* Force of constraint penalty r at u along its direction, N (2D: N/m). */
 double system_penalty_force(const struct solid_system *system, int64_t r, const double *u);
 
-/* Whether relaxations use an inverse factor (inverse_stiffness.h): with smoothed cells and node values, in
- * 3D, and in 2D if cells are flat. Otherwise, in 2D supports are narrow, and it costs more than it saves
- * where faces of a cut press on each other. */
+/* Whether there can be an inverse factor (inverse_stiffness.h): with smoothed cells and node values. */
 bool system_has_inverse(const struct solid_system *system);
 
 /* mass[node_count] > 0: the fictitious mass, a bound of each node's stiffness, N/m (2D: N/m2). Without an
