@@ -192,28 +192,25 @@ static enum status add_side(const struct prescription *p, const struct boundary_
     return status;
 }
 
-/* The boundary averages of a condition. With a split, a node on an edge has one average for each side, so
- * that the traction may jump there. Without, the field near the edge is less constrained. A constant
- * displacement needs no split: the only linear field that meets it has no traction. On curved sides no linear
- * field is exact, with or without a split. */
-static enum status build_averages(const struct prescription *p, struct boundary_averages *averages,
-                                  struct boundary_sides *sides, struct error *error)
+/* Where sides of one piece of the set meet, let the tractions of each flat one have a mean of their own, as a
+ * linear field needs it, along the axes that the condition prescribes: an average at a node of an edge takes
+ * the traction of all its sides. A constant displacement needs none: the only linear field that meets it has
+ * no traction. */
+static enum status part_tractions(const struct prescription *p, const struct boundary_averages *averages,
+                                  const struct boundary_sides *sides, struct error *error)
 {
-    const struct facet_set *set = &p->condition->facets;
-    bool split = p->condition->kind == CONDITION_NORMAL;
-    enum status status = boundary_sides_build(&p->input->face_table, set, split, averages, sides, error);
-    if (split || status != STATUS_OK ||
-        (p->condition->kind == CONDITION_COMPONENTS && prescription_is_full(p))) {
-        return status;
+    int64_t dim = p->input->cells.dim;
+    NEW_SCRATCH(int64_t, count, sides->group_count, error);
+    if (p->condition->kind == CONDITION_COMPONENTS && prescription_is_full(p)) {
+        return STATUS_OK;
     }
     for (int64_t a = sides->node_average_count; a < averages->count; a++) {
-        if (!sides->flat[a]) {
-            return STATUS_OK;
-        }
+        count[sides->group[a]]++;
     }
-    boundary_averages_free(averages);
-    boundary_sides_free(sides);
-    return boundary_sides_build(&p->input->face_table, set, true, averages, sides, error);
+    for (int64_t i = 0; i < sides->group_count * dim; i++) {
+        p->shared[i] = p->shared[i] || count[i / dim] > 1;
+    }
+    return STATUS_OK;
 }
 
 /* Add constraint rows on boundary averages, then on means over flat sides. */
@@ -221,12 +218,12 @@ static enum status add_averages(struct prescription *p, struct error *error)
 {
     FREED_BY(boundary_averages_free) struct boundary_averages averages = {0};
     FREED_BY(boundary_sides_free) struct boundary_sides sides = {0};
-    RETURN_IF_ERROR(build_averages(p, &averages, &sides, error));
+    bool normal = p->condition->kind == CONDITION_NORMAL; /* a node on an edge has one for each side */
+    RETURN_IF_ERROR(
+        boundary_sides_build(&p->input->face_table, &p->condition->facets, normal, &averages, &sides, error));
     RETURN_IF_ERROR(NEW_ARRAY(&p->shared, sides.group_count * p->input->cells.dim, error));
     RETURN_IF_ERROR(add_all(p, &averages, &sides, sides.node_average_count, error));
-    if (p->condition->kind == CONDITION_NORMAL) {
-        RETURN_IF_ERROR(note_sliding(p, &sides, error));
-    }
+    RETURN_IF_ERROR(normal ? note_sliding(p, &sides, error) : part_tractions(p, &averages, &sides, error));
     for (int64_t a = sides.node_average_count; a < averages.count; a++) {
         if (sides.flat[a]) {
             RETURN_IF_ERROR(add_side(p, &averages, &sides, a, error));
