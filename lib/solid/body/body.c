@@ -218,3 +218,12 @@ void body_free(struct body *body)
              body->node_place, body->u, body->F, body->J, body->force, body->derivative);
     *body = (struct body){0};
 }
+
+bool body_slackens(const struct body *body)
+{
+    bool any = false;
+    for (int64_t m = 0; m < body->material_count; m++) {
+        any = any || material_laws[body->materials[m].model]->slackens;
+    }
+    return any;
+}

@@ -160,6 +160,9 @@ double body_augment(struct body *body, bool steady, double most, double strain);
 /* The largest relative lack of the pressures in an accepted state. */
 #define NODAL_PRESSURE_LACK 1e-3
 
+/* Whether fibres of a material bear no pressure: see law.h. */
+bool body_slackens(const struct body *body);
+
 /* Volume at rest, the sum of the weights of the points, m3 (2D: m2). */
 double body_volume(const struct body *body);
 

@@ -154,6 +154,7 @@ enum status newton_run(struct solid_system *system, const struct statics_options
                        .options = options,
                        .report = report,
                        .size = system->node_count * system->dim,
+                       .slackens = body_slackens(&system->body),
                        .slides = system_has_friction(system),
                        .u = u,
                        .row_force = row_force};

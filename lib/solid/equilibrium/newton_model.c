@@ -49,17 +49,30 @@ double newton_difference(const struct newton *n, const double *move)
     return DIFFERENCE_STEP * n->spacing / (longest > 0.0 ? longest : 1.0);
 }
 
-/* product = K move, with the stiffness K at u of all but the contacts. */
+/* The forces at u + way move, without contacts. */
+static void push(struct newton *n, double way, const double *move, double *forces)
+{
+    for (int64_t i = 0; i < n->size; i++) {
+        n->trial[i] = n->u[i] + way * move[i];
+    }
+    (void)system_smooth_residual(n->system, n->trial, forces);
+    n->report->force_evaluations++;
+}
+
+/* product = K move, with the stiffness K at u of all but the contacts. Where fibres may slacken, it is the
+ * mean of both ways: at a kink of the stress that of one way is no linear function of the move. */
 static void multiply(struct newton *n, const double *move, double *product)
 {
-    double epsilon = newton_difference(n, move);
-    for (int64_t i = 0; i < n->size; i++) {
-        n->trial[i] = n->u[i] + epsilon * move[i];
+    double epsilon = newton_difference(n, move), width = epsilon;
+    const double *behind = n->at_u.smooth;
+    push(n, epsilon, move, product);
+    if (n->slackens) {
+        push(n, -epsilon, move, n->at_trial.smooth);
+        behind = n->at_trial.smooth;
+        width = 2.0 * epsilon;
     }
-    (void)system_smooth_residual(n->system, n->trial, product);
-    n->report->force_evaluations++;
     for (int64_t i = 0; i < n->size; i++) {
-        product[i] = (n->at_u.smooth[i] - product[i]) / epsilon;
+        product[i] = (behind[i] - product[i]) / width;
     }
 }
 

@@ -64,6 +64,7 @@ struct newton {
     int64_t cost;   /* and one more than the evaluations that making it took */
     double square;  /* r . M^-1 r at the start of the last correction */
     double lowest;  /* least eigenvalue of M^-1 K, from above; INFINITY: not known at this load */
+    bool slackens;  /* a material's fibres may */
     bool slides;    /* a contact has friction: every increment of the load ends in an equilibrium */
     bool rests;     /* at which u is, of the increment before the next one */
     bool sticks;    /* no point that presses slips, until that is in equilibrium, */

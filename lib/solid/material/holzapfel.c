@@ -79,6 +79,7 @@ static const struct law_key keys[] = {
 const struct law law_holzapfel = {.name = "holzapfel-gasser-ogden",
                                   .keys = keys,
                                   .has_fibres = true,
+                                  .slackens = true,
                                   .plane = "gamma",
                                   .prepare = prepare,
                                   .energy = energy,

@@ -46,6 +46,7 @@ struct law {
     bool by_e;                  /* its stiffness may be given by E */
     enum law_volume volume;
     bool has_fibres;
+    bool slackens;     /* fibres bear no pressure: the stress has a kink where they are as long as at rest */
     const char *plane; /* the key that, if given, needs the plane of two families of fibres; NULL: none */
     /* From a section's numbers, within their ranges, to the law's parameters relative to the shear modulus at
      * rest, which is returned, Pa; 0 where that comes from E; negative: *fault says why the law has none, as

@@ -85,6 +85,7 @@ static const struct law_key keys[] = {
 const struct law law_trans_iso = {.name = "trans-iso",
                                   .keys = keys,
                                   .has_fibres = true,
+                                  .slackens = true,
                                   .prepare = prepare,
                                   .energy = energy,
                                   .stress = stress};
