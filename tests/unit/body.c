@@ -1,5 +1,6 @@
 /* The force loop: no forces from rigid motion, forces that are the gradient of the energy and balance, exact
  * linear fields, and reported errors. */
+#include "base/vector.h"
 #include "body_setup.h"
 
 /* Translation, quarter turns and other rotations make no forces, and no energy. */
@@ -183,6 +184,35 @@ TEST(faults)
     input.point_count = 0;
     FAILS_WITH(body_build(&input, &body, &error), STATUS_INPUT, "points.x: 0 points: none, or too many");
     fault_of_smoothing();
+}
+
+/* The Cauchy stress of smoothed cells is symmetric in any state, as a rotation changes no energy. */
+static void check_symmetry(const struct sample *sample, const struct setup *setup, struct random *random)
+{
+    FREED_BY(body_free) struct body body = make_body(sample, setup);
+    int64_t count = sample->cloud.node_count * sample->dim, points = sample->assembly.point_count;
+    double *F = zeros(points * 9, sizeof *F), *P = zeros(points * 9, sizeof *P);
+    double *force = zeros(count, sizeof *force), *u = deformed_field(sample, &body, force, random),
+           most = 0.0;
+    (void)body_force(&body, u, force);
+    body_gradient(&body, F);
+    body_stress(&body, P);
+    for (int64_t i = 0; i < points * 9; i++) {
+        most = fmax(most, fabs(P[i]));
+    }
+    for (int64_t q = 0; q < points; q++) {
+        for (int i = 0; i < 9; i++) {
+            const double *p = P + 9 * q, *f = F + 9 * q;
+            double one = vector_dot(3, p + i / 3 * 3, f + i % 3 * 3);
+            double other = vector_dot(3, p + i % 3 * 3, f + i / 3 * 3);
+            NEAR_TO(one, other, 1e-10 * most);
+        }
+    }
+}
+
+TEST(cauchy_stress_is_symmetric)
+{
+    for_all(check_symmetry);
 }
 
 /* A body of many blocks: forces from the caller's

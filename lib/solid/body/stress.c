@@ -245,7 +245,20 @@ void stress_cells(const struct body *body, const struct block *block, block_rows
     }
 }
 
-/* The derivative of the energy by F; in a cell F_h changes with F. */
+/* P of the Cauchy stress of a cell: a small motion of gradient G changes the energy by P : G F + T : G H, so
+ * that this is (P F^T + T H^T) / det F, which is symmetric, as a rotation G changes nothing. */
+static void cauchy_part(const struct body *body, int64_t q, const double F[9], const double T[9], double P[9])
+{
+    double H[9], C[9], D = determinant(F);
+    stress_matrix(body->dim, body->cells.interpolant + q, body->point_count, H);
+    cofactor(F, C);
+    for (int i = 0; i < 9; i++) {
+        for (int k = 0; k < 3; k++) {
+            P[i] += vector_dot(3, T + i / 3 * 3, H + 3 * k) * C[3 * k + i % 3] / D;
+        }
+    }
+}
+
 static void put_stress(const struct body *body, int64_t q, const double F[9], double J, void *stress)
 {
     double *P = (double *)stress + body->order[q] * 9, T[9];
@@ -254,9 +267,7 @@ static void put_stress(const struct body *body, int64_t q, const double F[9], do
         return;
     }
     cell_stress(body, q, P, T);
-    for (int k = 0; k < 9; k++) {
-        P[k] += T[k];
-    }
+    cauchy_part(body, q, F, T, P);
 }
 
 void body_stress(struct body *body, double *stress)
