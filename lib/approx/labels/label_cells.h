@@ -23,7 +23,7 @@ struct label_cells_options {
     const double *size; /* sized->node_count: wanted length of edges, m, positive, linear within cells; cubes
                            are halved where it is smaller than theirs; NULL: nowhere */
     const bool *keep;   /* labels->count: cells of this label are wanted; not label 0 */
-    bool largest;       /* keep only the largest of several connected bodies */
+    bool largest; /* keep only the largest of several connected bodies: voxels of others become outside */
     void (*begin)(void *context, const char *step); /* called at the beginning of each step; NULL: not */
     void *context;
 };

@@ -20,7 +20,6 @@ void label_cells_gradient(const struct label_cells *mesh, int64_t cell, int k, d
 
 struct volumes {
     const struct shaping *shaping;
-    double *wanted;   /* labels->count: volume of the voxels, m3; 0: not to be preserved */
     double *pressure; /* labels->count */
     double *matrix;   /* labels->count squared */
     bool *movable;    /* nodes: of interfaces that are near them */
@@ -64,14 +63,14 @@ static bool find_missing(const struct volumes *volumes, double *missing)
     struct cells cells = label_cells_view(volumes->shaping->mesh);
     int32_t count = volumes->shaping->labels->count;
     double worst = 0;
-    memcpy(missing, volumes->wanted, (size_t)count * sizeof *missing);
+    memcpy(missing, volumes->shaping->kept->volume, (size_t)count * sizeof *missing);
     for (int64_t c = 0; c < cells.count; c++) {
         int32_t label = volumes->shaping->mesh->label[c];
         missing[label] -= volumes->shaping->kept->wanted[c] ? cell_volume(&cells, c) : 0;
     }
     for (int32_t l = 0; l < count; l++) {
-        missing[l] = volumes->wanted[l] > 0 ? missing[l] : 0;
-        worst = fmax(worst, fabs(missing[l]) - 1e-4 * volumes->wanted[l]);
+        missing[l] = volumes->shaping->kept->volume[l] > 0 ? missing[l] : 0;
+        worst = fmax(worst, fabs(missing[l]) - 1e-4 * volumes->shaping->kept->volume[l]);
     }
     return worst > 0;
 }
@@ -134,17 +133,15 @@ static void correct_volumes(const struct volumes *volumes)
 
 static void volumes_free(struct volumes *volumes)
 {
-    FREE_ALL(volumes->wanted, volumes->pressure, volumes->matrix, volumes->movable, volumes->free);
+    FREE_ALL(volumes->pressure, volumes->matrix, volumes->movable, volumes->free);
 }
 
-/* Correct the volumes of labels by small moves of interfaces: they become those of their voxels minus what is
- * dropped. Nodes with apart[] do not move. */
+/* Correct the volumes of labels by small moves of interfaces. Nodes with apart[] do not move. */
 static enum status label_cells_volumes(const struct shaping *shaping, struct error *error)
 {
     const struct labels *labels = shaping->labels;
-    int64_t nodes = shaping->mesh->node_count, voxels = labels->size[0] * labels->size[1] * labels->size[2];
+    int64_t nodes = shaping->mesh->node_count;
     FREED_BY(volumes_free) struct volumes volumes = {.shaping = shaping};
-    RETURN_IF_ERROR(NEW_ARRAY(&volumes.wanted, labels->count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&volumes.pressure, labels->count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&volumes.matrix, (int64_t)labels->count * labels->count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&volumes.movable, nodes, error));
@@ -152,13 +149,6 @@ static enum status label_cells_volumes(const struct shaping *shaping, struct err
     for (int64_t n = 0; n < nodes; n++) {
         volumes.free[n] = volumes.movable[n] = shaping->star.labels[n] >= 2 && !shaping->kept->apart[n] &&
                                                shaping->off[n] <= LABEL_CELLS_NEAR * shaping->voxel;
-    }
-    double volume = labels_voxel_volume(labels);
-    for (int64_t i = 0; i < voxels; i++) {
-        volumes.wanted[labels->label[i]] += shaping->keep[labels->label[i]] ? volume : 0;
-    }
-    for (int32_t l = 0; l < labels->count; l++) {
-        volumes.wanted[l] = fmax(volumes.wanted[l] - shaping->kept->dropped[l], 0);
     }
     for (int sweep = 0; sweep < LABEL_CELLS_SWEEPS && find_pressures(&volumes); sweep++) {
         correct_volumes(&volumes);

@@ -174,7 +174,7 @@ enum status label_cells_keep(const struct labels *labels, const struct label_cel
     FREED_BY(keeping_free)
     struct label_cells_keeping keeping = {.mesh = mesh, .between = between, .cells = label_cells_view(mesh)};
     *kept = (struct label_cells_kept){0};
-    RETURN_IF_ERROR(NEW_ARRAY(&kept->dropped, labels->count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&kept->volume, labels->count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&keeping.across, count * (dim + 1), error));
     RETURN_IF_ERROR(NEW_ARRAY(&keeping.wanted, count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&keeping.group, count, error));
@@ -187,11 +187,7 @@ enum status label_cells_keep(const struct labels *labels, const struct label_cel
         keeping.group[c] = -1;
     }
     keep_bodies(&keeping, options->largest);
-    for (int64_t c = 0; c < count; c++) {
-        bool left_out = options->keep[mesh->label[c]] && !keeping.wanted[c];
-        kept->dropped[mesh->label[c]] += left_out ? cell_volume(&keeping.cells, c) : 0;
-        keeping.group[c] = -1;
-    }
+    memset(keeping.group, -1, (size_t)count * sizeof *keeping.group);
     label_cells_join(&keeping, &star);
     memset(keeping.group, -1, (size_t)count * sizeof *keeping.group);
     for (int64_t c = 0; c < count; c++) {
@@ -200,6 +196,7 @@ enum status label_cells_keep(const struct labels *labels, const struct label_cel
         }
     }
     RETURN_IF_ERROR(label_cells_cut_apart(&keeping, &star, error));
+    RETURN_IF_ERROR(label_cells_volume(labels, options, mesh, keeping.wanted, kept->volume, error));
     mesh->facet_count = find_facets(&keeping, NULL, NULL);
     RETURN_IF_ERROR(NEW_ARRAY(&mesh->facet, mesh->facet_count * dim, error));
     RETURN_IF_ERROR(NEW_ARRAY(&mesh->side, mesh->facet_count * 2, error));
@@ -211,6 +208,6 @@ enum status label_cells_keep(const struct labels *labels, const struct label_cel
 
 void label_cells_kept_free(struct label_cells_kept *kept)
 {
-    FREE_ALL(kept->wanted, kept->apart, kept->dropped);
+    FREE_ALL(kept->wanted, kept->apart, kept->volume);
     *kept = (struct label_cells_kept){0};
 }

@@ -1,8 +1,9 @@
 #include "approx/cells/cells.h"
 #include "approx/cells/raster.h"
-#include "approx/labels/label_cells.h"
+#include "approx/labels/label_cells_private.h"
 #include "base/memory.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 /* Whether a cell of the label contains a voxel or one that touches it. For a label that is not kept: whether
@@ -58,6 +59,84 @@ enum status label_cells_lost(const struct labels *labels, const bool *keep, cons
         int32_t label = labels->label[v], there = owner[v] >= 0 ? mesh->label[owner[v]] : -1;
         if (there != (keep[label] ? label : -1)) {
             lost[label] += !is_near(labels, mesh, owner, v, label, keep[label]);
+        }
+    }
+    return STATUS_OK;
+}
+
+/* ---- voxels that hang together with cells ---- */
+
+/* Voxels of each label, those that are not kept together, and the bodies that they hang together with: 0
+ * none, 1 one that is kept, 2 one that is left out; negative until they pass that on. */
+struct hanging {
+    const struct labels *labels;
+    const bool *keep;
+    int8_t *body;
+    int64_t *fresh, count, room;
+};
+
+static bool are_same(const struct hanging *hanging, int64_t a, int64_t b)
+{
+    int32_t first = hanging->labels->label[a], second = hanging->labels->label[b];
+    return first == second || !(hanging->keep[first] || hanging->keep[second]);
+}
+
+/* The body of a voxel is that of the voxels of its label beside it that have none. */
+static enum status pass_on(struct hanging *hanging, int64_t voxel, struct error *error)
+{
+    const int64_t *n = hanging->labels->size;
+    const int64_t at[3] = {voxel % n[0], voxel / n[0] % n[1], voxel / n[0] / n[1]};
+    const int64_t step[3] = {1, n[0], n[0] * n[1]};
+    for (int k = 0; k < 6; k++) {
+        int64_t place = at[k / 2] + (k % 2 ? 1 : -1), next = voxel + (k % 2 ? 1 : -1) * step[k / 2];
+        if (place >= 0 && place < n[k / 2] && hanging->body[next] == 0 && are_same(hanging, voxel, next)) {
+            RETURN_IF_ERROR(GROW_ARRAY(&hanging->fresh, hanging->count + 1, &hanging->room, error));
+            hanging->fresh[hanging->count++] = next;
+            hanging->body[next] = (int8_t)-abs(hanging->body[voxel]);
+        }
+    }
+    return STATUS_OK;
+}
+
+static void hanging_free(struct hanging *hanging)
+{
+    FREE_ALL(hanging->body, hanging->fresh);
+}
+
+enum status label_cells_volume(const struct labels *labels, const struct label_cells_options *options,
+                               const struct label_cells *mesh, const bool *wanted, double *volume,
+                               struct error *error)
+{
+    int64_t voxels = labels->size[0] * labels->size[1] * labels->size[2];
+    double voxel = labels_voxel_volume(labels);
+    const bool *keep = options->keep;
+    FREED_BY(hanging_free) struct hanging hanging = {.labels = labels, .keep = keep};
+    NEW_SCRATCH(int32_t, owner, voxels, error);
+    RETURN_IF_ERROR(NEW_ARRAY(&hanging.body, voxels, error));
+    RETURN_IF_ERROR(own_voxels(labels, mesh, owner, error));
+    for (int64_t v = 0; v < voxels; v++) {
+        int32_t label = labels->label[v], there = owner[v] >= 0 ? mesh->label[owner[v]] : 0;
+        bool inside = owner[v] >= 0 && wanted[owner[v]];
+        owner[v] = inside ? there : -1;
+        if (keep[label] ? there == label : !inside) {
+            hanging.body[v] = inside || !keep[label] ? 1 : 2;
+        }
+    }
+    for (int64_t v = 0; v < voxels; v++) {
+        if (hanging.body[v] > 0) {
+            RETURN_IF_ERROR(pass_on(&hanging, v, error));
+        }
+    }
+    for (int64_t i = 0; i < hanging.count; i++) {
+        RETURN_IF_ERROR(pass_on(&hanging, hanging.fresh[i], error));
+    }
+    for (int64_t v = 0; v < voxels; v++) {
+        int32_t label = abs(hanging.body[v]) == 1 ? labels->label[v] : owner[v];
+        if (label >= 0 && keep[label]) {
+            volume[label] += voxel;
+        }
+        if (options->largest && abs(hanging.body[v]) == 2) {
+            labels->label[v] = 0;
         }
     }
     return STATUS_OK;

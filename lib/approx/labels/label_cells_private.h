@@ -80,9 +80,9 @@ void star_free(struct label_cells_star *star);
 
 /* The cells of the body. */
 struct label_cells_kept {
-    bool *wanted;    /* cell_count: of the body; the others lie around it */
-    bool *apart;     /* node_count: nodes that have others at the same place */
-    double *dropped; /* labels->count: the volume of bodies left out, m3 */
+    bool *wanted;   /* cell_count: of the body; the others lie around it */
+    bool *apart;    /* node_count: nodes that have others at the same place */
+    double *volume; /* labels->count: of label_cells_volume */
 };
 
 /* Choose the cells of wanted labels, without specks; join or cut apart parts that share only nodes or edges;
@@ -92,6 +92,15 @@ MUST_CHECK enum status label_cells_keep(const struct labels *labels,
                                         struct label_cells *mesh, struct label_cells_kept *kept,
                                         struct error *error);
 void label_cells_kept_free(struct label_cells_kept *kept);
+
+/* The volume that the cells of each label are to have, volume[labels->count], m3: that of the voxels that
+ * hang together with its cells, and of those of others in them that do not hang together with theirs: specks
+ * and cavities that the lattice does not see. `mesh` has cells beside the wanted ones, too: those of bodies
+ * that are left out. Voxels nearer to these count for them, and become outside if `largest`. */
+MUST_CHECK enum status label_cells_volume(const struct labels *labels,
+                                          const struct label_cells_options *options,
+                                          const struct label_cells *mesh, const bool *wanted, double *volume,
+                                          struct error *error);
 
 /* Drop the cells that are not wanted, and nodes without cells. */
 MUST_CHECK enum status label_cells_drop(const bool *wanted, struct label_cells *mesh, struct error *error);

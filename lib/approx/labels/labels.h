@@ -12,7 +12,7 @@
  * the slice, which is at `across` on the third axis of the world. */
 struct labels {
     int64_t size[3];
-    const uint16_t *label; /* size[2] * size[1] * size[0], first index fastest; less than `count` */
+    uint16_t *label; /* size[2] * size[1] * size[0], first index fastest; less than `count` */
     int32_t count;
     double to_voxel[3][4]; /* (world, m, 1) to voxel index, voxel centres */
     int dim;
