@@ -216,6 +216,18 @@ setup_file() {
     [[ $stderr == *"voxels show places outside of the image: 0 there"* ]]
 }
 
+@test "without the end of a name the format is that of the image" {
+    nifti smooth scan.nii
+    for end in nii nii.gz; do
+        scan=scan.$end
+        [ -e "$scan" ] || gzip -k scan.nii
+        warp -o named.$end "$scan" u.dat
+        warp "$scan" u.dat | cmp - named.$end
+        warp -o bare "$scan" u.dat
+        cmp bare named.$end
+    done
+}
+
 @test "frames on the way" {
     sed 's/^# u f8/# u.frame.2 f8/' u.dat > frames.dat
     refused 2 "no section u" warp "$BATS_FILE_TMPDIR/scan.nii.gz" frames.dat

@@ -215,7 +215,7 @@ static enum status check_detached(const struct image *image, const struct image_
 {
     bool known = text_ends(name, ".nhdr") || text_ends(name, ".nrrd") || text_ends(name, ".mhd") ||
                  text_ends(name, ".mha");
-    return layout->data_file[0] == '\0' || image->format == IMAGE_NIFTI_GZIP || known
+    return layout->data_file[0] == '\0' || image->format <= IMAGE_NIFTI || known
                ? STATUS_OK
                : fail(error, STATUS_INPUT,
                       "is a header whose data are in a file of their own: give its name, which ends in .nhdr "
@@ -235,6 +235,7 @@ static enum status read_file(struct image_bytes *file, const char *name, struct 
         image->format = IMAGE_METAIMAGE;
         RETURN_IF_ERROR(metaimage_header(file, image, &layout, error));
     } else {
+        image->format = file->was_packed ? IMAGE_NIFTI_GZIP : IMAGE_NIFTI;
         RETURN_IF_ERROR(nifti_header(file, name, image, &layout, error));
     }
     if (layout.skip_bytes < 0 && layout.encoding != IMAGE_RAW) {
