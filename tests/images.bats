@@ -199,6 +199,23 @@ END
     finds image
 }
 
+@test "places of an unknown space stay in NIfTI" {
+    for v in {0..7}; do echo "$((v % 2)) $((v / 2 % 2)) $((v / 4))"; done > corners
+    printf '%s\n' 1 -2 3 4 7 20 -30 11 > 1.txt
+    cloud -d 3 -k regular -n 2 --box 0,0.02,0,0.02,0,0.02 | with_section - u f8 <(yes '0 0 0' | head -n 8) > still.mts
+    while IFS='|' read -r lines matrix stated; do
+        text nrrd "dimension: 3\nsizes: 2 2 2\nkinds: domain domain domain\n$lines"
+        warp -o placed.nii image still.mts 2> said
+        lie "$matrix" corners
+        finds placed.nii
+        [ "$(grep -c 'neither sform nor qform' said)" = "$stated" ]
+    done << 'END'
+space dimension: 3\nspace directions: (0,2,0) (-3,0,0) (0,0,4)\nspace origin: (10,6,7)|0 -3 0 10 2 0 0 6 0 0 4 7|0
+spacings: 2 3 4\naxis mins: 5 6 7|2 0 0 5 0 3 0 6 0 0 4 7|0
+spacings: 2 3 4|2 0 0 0 0 3 0 0 0 0 4 0|1
+END
+}
+
 @test "NRRD and MetaImage: vectors of a space turn with it, lists do not; what the header leaves open is noted" {
     while IFS='|' read -r sizes kinds space numbers axis; do
         [[ $sizes == 3* ]] && before='none ' after='' || before='' after=' none'

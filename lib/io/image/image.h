@@ -62,7 +62,8 @@ struct image {
                               values[((k * size[1] + j) * size[0] + i) * components + c], after slope and inter */
     double slope, inter;   /* value = slope * stored + inter; slope 1, inter 0: none; ignored for RGB */
     double unit;           /* metres in a unit of length of the file */
-    int space; /* IMAGE_SPACE_...: of world coordinates; UNKNOWN: the file states only voxel sizes */
+    int space; /* IMAGE_SPACE_...: of world coordinates; UNKNOWN: the file names none. In NIfTI, which then
+                  states sizes of voxels alone, a place or direction makes it ALIGNED */
     enum image_format format;
     int version; /* of NIfTI: 1 or 2; images too large for 1 are written as 2 */
     int intent;  /* NIfTI's code of the meaning of the values; 0: none */

@@ -298,7 +298,7 @@ size_t nifti_encode(const struct image *image, unsigned char bytes[NIFTI2_HEADER
                            .offset = size + 4,
                            .slope = image->slope,
                            .inter = image->inter,
-                           .sform = image->space, /* an unknown space stays unknown */
+                           .sform = image->space,
                            .units = unit > 0.5      ? 1
                                     : unit > 0.5e-3 ? 2
                                                     : 3};
@@ -306,9 +306,15 @@ size_t nifti_encode(const struct image *image, unsigned char bytes[NIFTI2_HEADER
     for (int i = 0; i < 12; i++) {
         header.srow[i / 4][i % 4] = image->to_world[i / 4][i % 4] / unit;
     }
+    bool orthogonal = quaternion_of(header.srow, header.quatern, header.pixdim);
+    /* An unknown space stays unknown where the sizes of voxels alone tell the map. */
+    for (int i = 0; i < 12 && header.sform == IMAGE_SPACE_UNKNOWN; i++) {
+        double plain = i / 4 == i % 4 ? header.pixdim[1 + i / 4] : 0;
+        header.sform = header.srow[i / 4][i % 4] == plain ? IMAGE_SPACE_UNKNOWN : IMAGE_SPACE_ALIGNED;
+    }
     /* A map that a quaternion cannot represent is only in the sform. */
-    if (quaternion_of(header.srow, header.quatern, header.pixdim)) {
-        header.qform = image->space;
+    if (orthogonal) {
+        header.qform = header.sform;
         for (int r = 0; r < 3; r++) {
             header.qoffset[r] = header.srow[r][3];
         }
