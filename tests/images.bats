@@ -217,9 +217,9 @@ END
 }
 
 @test "NRRD and MetaImage: vectors of a space turn with it, lists do not; what the header leaves open is noted" {
-    while IFS='|' read -r sizes kinds space numbers axis; do
+    while IFS='|' read -r sizes kinds space numbers axis more; do
         [[ $sizes == 3* ]] && before='none ' after='' || before='' after=' none'
-        text nrrd "dimension: 4\nsizes: $sizes\n${kinds:+kinds: $kinds\n}space: $space\nspace directions: $before(1,0,0) (0,1,0) (0,0,1)$after"
+        text nrrd "dimension: 4\nsizes: $sizes\n${kinds:+kinds: $kinds\n}space: $space\nspace directions: $before(1,0,0) (0,1,0) (0,0,1)$after${more:+\n$more}"
         sed -i '$d; s/^1 -2 3 4/1 2 3 4 5 6/' image
         [ "$(sample -u mm -p <(echo 0 0 0) image 2> note | awk 'NR == 2 { print $4, $5, $6 }')" = "$numbers" ]
         sample --vector -u mm -p <(echo 0 0 0) image 2> note | awk -v axis="$axis" 'NR == 2 { split(axis, a, " ")
@@ -228,10 +228,15 @@ END
 3 2 1 1|vector domain domain domain|LPS|1 2 3|-1 -2 3
 3 2 1 1|3-vector domain domain domain|RAS|-1 -2 3|1 2 3
 3 2 1 1|covariant-vector space space space|LAS|1 -2 3|-1 2 3
+3 2 1 1|vector domain domain domain|RAS|2 -1 3|-2 1 3|measurement frame: (0,1,0) (-1,0,0) (0,0,1)
+3 2 1 1|vector domain domain domain|LPS|-2 1 3|2 -1 3|measurement frame: (0,1,0) (-1,0,0) (0,0,1)
 3 2 1 1|list domain domain domain|RAS|1 2 3|1 2 3
 3 2 1 1||RAS|1 2 3|1 2 3
 2 1 1 3|domain domain domain list|RAS|1 3 5|1 3 5
 END
+    text nrrd 'dimension: 4\nsizes: 3 2 1 1\nkinds: vector domain domain domain\nspace: RAS\nspace directions: none (1,0,0) (0,1,0) (0,0,1)'
+    sed -i '$d; s/^1 -2 3 4/1 2 3 4 5 6/; s/short/uchar/' image # unsigned: a colour
+    [ "$(sample -p <(echo 0 0 0) image 2> note | awk 'NR == 2 { print $4, $5, $6 }')" = "1 2 3" ]
     while IFS='|' read -r format lines message; do
         text "$format" "$lines"
         sample -p <(echo 0 0 0) image 2>&1 > found | sed 's/^sample: image: //' | cmp - <(printf "${message:+$message\n}")

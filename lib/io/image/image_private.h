@@ -58,9 +58,10 @@ enum image_encoding { IMAGE_RAW, IMAGE_PACKED /* by gzip or zlib */, IMAGE_ASCII
 struct image_layout {
     const struct nifti_type *type;
     enum image_encoding encoding;
-    bool swapped;        /* the other byte order */
-    bool together;       /* all values of a voxel lie together; else there is a volume for each component */
-    bool mirrored[2];    /* components along x and y have the other sign in memory */
+    bool swapped;  /* the other byte order */
+    bool together; /* all values of a voxel lie together; else there is a volume for each component */
+    bool turned;   /* vectors of at most three components are multiplied by turn */
+    double turn[3][3];
     int64_t skip_lines;  /* before the values: lines, as they stand, */
     int64_t skip_bytes;  /* and bytes, of what was compressed; -1: all but the last bytes of the file */
     char data_file[256]; /* in the folder of the header or below; "": they follow the header */

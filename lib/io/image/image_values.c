@@ -203,6 +203,18 @@ static enum status interleave(struct image *image, struct error *error)
     return STATUS_OK;
 }
 
+static void turn_vector(const double turn[3][3], size_t components, double *vector)
+{
+    double before[3];
+    memcpy(before, vector, components * sizeof *vector);
+    for (size_t r = 0; r < components; r++) {
+        vector[r] = 0;
+        for (size_t c = 0; c < components; c++) {
+            vector[r] += turn[r][c] != 0 ? turn[r][c] * before[c] : 0; /* no NaN of another component */
+        }
+    }
+}
+
 enum status image_values_read(struct image_bytes *file, const struct image_layout *layout,
                               struct image *image, struct error *error)
 {
@@ -215,10 +227,8 @@ enum status image_values_read(struct image_bytes *file, const struct image_layou
     for (size_t i = 0; i < count && (image->slope != 1 || image->inter != 0); i++) {
         image->values[i] = image->slope * image->values[i] + image->inter;
     }
-    for (size_t c = 0; c < 2 && c < components; c++) {
-        for (size_t i = c; i < count && layout->mirrored[c]; i += components) {
-            image->values[i] = -image->values[i];
-        }
+    for (size_t v = 0; v < count && layout->turned; v += components) {
+        turn_vector(layout->turn, components, image->values + v);
     }
     return image_segments_merge(image, error);
 }

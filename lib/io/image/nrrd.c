@@ -3,6 +3,7 @@
 
 #include "base/options.h"
 
+#include <math.h>
 #include <string.h>
 #include <strings.h>
 
@@ -21,6 +22,7 @@ struct nrrd {
     int endian, encoding; /* 1: big; enum image_encoding */
     enum kind kind[AXES];
     double sign[3];      /* of the space's axes, to RAS */
+    double frame[3][3];  /* the axes of vectors in the space */
     double unit[3];      /* of the space's axes, m */
     double length[AXES]; /* unit of an axis, m */
 };
@@ -98,6 +100,20 @@ static enum status set_origin(void *context, const struct text_header *header, s
                : header_fail(header, "a vector (X,Y,Z) of the space is expected", error);
 }
 
+static enum status set_frame(void *context, const struct text_header *header, struct error *error)
+{
+    struct nrrd *nrrd = context;
+    const char *at = header->value;
+    bool good = true;
+    for (int c = 0; c < nrrd->space_dimension && good; c++) {
+        const double *axis = nrrd->frame[c];
+        good = take_vector(nrrd, &at, nrrd->frame[c]) && isfinite(axis[0] + axis[1] + axis[2]);
+    }
+    return good && *at == '\0'
+               ? STATUS_OK
+               : header_fail(header, "a vector of the space for each of its dimensions is expected", error);
+}
+
 /* Words in quotes, each a unit of length; "" is mm: of the axes of the space or of the array. */
 static enum status set_units(void *context, const struct text_header *header, struct error *error)
 {
@@ -171,6 +187,7 @@ static const struct header_field fields[] = {
     {"space", .set = set_space},
     {"centers|centerings", .set = set_centers},
     {"space directions", .set = set_directions},
+    {"measurement frame", .set = set_frame},
     {"space units", .set = set_units},
     {"units", .set = set_units},
     {"kinds", .set = set_kinds},
@@ -180,7 +197,7 @@ static const struct header_field fields[] = {
     {"data file|datafile", HEADER_FILE, AT(layout)},
     {"content", HEADER_TEXT, AT(image)},
     {"number|block size|blocksize|min|max|old min|oldmin|old max|oldmax|labels|thicknesses|sample units|"
-     "sampleunits|measurement frame",
+     "sampleunits",
      HEADER_LEFT},
 };
 
@@ -210,17 +227,24 @@ static enum status find_component(const struct nrrd *nrrd, int *component, struc
                : STATUS_OK;
 }
 
-/* Vectors in space have the axes of the space; in memory they are LPS, as in NIfTI files of ITK. */
+/* Vectors have the axes of the measurement frame, else of the space; in memory they are LPS, as in NIfTI
+ * files of ITK. Unsigned numbers are lists: colours are called vectors, too. */
 static void set_values(struct nrrd *nrrd, int component)
 {
     struct image *image = nrrd->image;
     nrrd->layout.together = component == 0;
-    if (component < 0 || nrrd->kind[component] != VECTOR) {
+    const struct nifti_type *type = nrrd->layout.type;
+    if (component < 0 || nrrd->kind[component] != VECTOR || nrrd->size[component] > 3 ||
+        (type->least == 0 && type->most > 0)) {
         return;
     }
     image->intent = IMAGE_INTENT_VECTOR;
-    for (int r = 0; r < 2; r++) {
-        nrrd->layout.mirrored[r] = image->space != IMAGE_SPACE_UNKNOWN && nrrd->sign[r] > 0;
+    nrrd->layout.turned = true;
+    for (int r = 0; r < 3; r++) {
+        double sign = r < 2 && image->space != IMAGE_SPACE_UNKNOWN ? -nrrd->sign[r] : 1;
+        for (int c = 0; c < 3; c++) {
+            nrrd->layout.turn[r][c] = sign * nrrd->frame[c][r];
+        }
     }
 }
 
@@ -299,6 +323,7 @@ enum status nrrd_header(struct image_bytes *file, struct image *image, struct im
     struct text_header header = {.file = file, .separator = ':'};
     struct nrrd nrrd = {.image = image,
                         .sign = {1, 1, 1},
+                        .frame = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
                         .spacing = {1, 1, 1, 1},
                         .unit = {1e-3, 1e-3, 1e-3},
                         .length = {1e-3, 1e-3, 1e-3, 1e-3}};
