@@ -62,6 +62,9 @@ exact='{ e = 100 + 50 * sin(300 * $1) * cos(200 * $2 + 1) + 30 * sin(250 * $3) }
     mts check with.mts
     [ "$(mts list with.mts | grep -c .)" -eq $(($(mts list cube.mts | grep -c .) + 1)) ]
     mts print T1 with.mts | cmp - <(sample scan.nii.gz cube.mts | awk '!/^#/ { print $4 }')
+    for name in cells nodes.x points.weight u u.frame.2; do
+        refused 2 "--section $name: other programs make this section: give another name" sample --section $name scan.nii.gz cube.mts
+    done
     sample --section T1 -t scan.nii.gz < cube.mts | has '^# T1 f8 125 1'
 }
 

@@ -61,6 +61,7 @@ static const char usage[] =
 #include "stage_options.h"
 #include "output.h"
 #include "images/tissue.h"
+#include "io/stream/sections.h"
 #include "stages/views.h"
 
 #include "base/eigen.h"
@@ -116,6 +117,11 @@ static void parse(const struct tool *tool, struct request *request)
     }
     if (request->axes && request->points == NULL && request->section == NULL) {
         request->section = "points.fibre";
+    }
+    if (request->section != NULL && strcmp(request->section, "points.fibre") != 0 &&
+        section_kind_of(request->section) != NULL) {
+        tool_fail(tool, STATUS_INPUT, "--section %s: other programs make this section: give another name",
+                  request->section);
     }
     if (request->axes && request->outside != 0) {
         tool_fail(tool, STATUS_INPUT, "--outside: with --vector it is 0: no direction");
