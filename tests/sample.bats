@@ -89,6 +89,12 @@ exact='{ e = 100 + 50 * sin(300 * $1) * cos(200 * $2 + 1) + 30 * sin(250 * $3) }
     refused 2 "another space, or unit" sample --material stiffness metres.nii.gz sphere.mts
     printf '0 0 0\n1 0 0\n' > points.tsv
     sample -u mm -p points.tsv metres.nii.gz
+    # A region may be as small.
+    tag -r small=ball:0.03,0.03,0.03,0.012 cube.mts | ipoints > points.mts
+    /usr/bin/python3 -c 'import nibabel as n, numpy as m; n.save(n.Nifti1Image(m.ones((4, 4, 4)), 40 * m.eye(4)), "coarse.nii")'
+    sample -r small coarse.nii points.mts 2> said > values.tsv
+    awk '!/^#/ { n++; for (d = 1; d < 4; d++) { if (n == 1 || $d < low[d]) low[d] = $d; if (n == 1 || $d > high[d]) high[d] = $d } }
+        END { exit !(n > 1 && high[1] - low[1] < .04) }' values.tsv
 }
 
 @test "stiffness from values: a table that a scene reads, with the same result as its own numbers" {

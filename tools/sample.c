@@ -75,8 +75,9 @@ static const char usage[] =
 /* Points, and the values of images there. */
 struct sampled {
     struct points points;
-    int64_t cols;  /* values at a point */
-    double *value; /* points.count * cols */
+    struct box box; /* of all points of the stream, beside the regions, too, m; of a table: none */
+    int64_t cols;   /* values at a point */
+    double *value;  /* points.count * cols */
 };
 
 /* The options. */
@@ -159,20 +160,38 @@ static bool are_good(const struct request *request, const double *values, size_t
     return some;
 }
 
+/* Exit if all points of the stream would lie in one voxel. */
+static void check_extent(const struct tool *tool, double inverse[3][4], const char *name,
+                         const struct sampled *rows)
+{
+    double widest = 0;
+    for (int r = 0; r < 3; r++) {
+        double voxels = 0;
+        for (int d = 0; d < rows->box.dim; d++) {
+            voxels += fabs(inverse[r][d]) * (rows->box.high[d] - rows->box.low[d]);
+        }
+        widest = fmax(widest, voxels);
+    }
+    if (widest > 0 && widest < 1) {
+        tool_fail(tool, STATUS_INPUT,
+                  "%s: all points lie within %.2g of a voxel of %s: another space, or unit?",
+                  rows->points.what, widest, name);
+    }
+}
+
 /* Sample one image at all points, into columns from `first` on. */
 static void sample_image(const struct tool *tool, const struct request *request, const struct image *image,
                          const char *name, struct sampled *rows, int64_t first)
 {
     double inverse[3][4];
-    struct box box = box_of(3, 0, NULL);
     int64_t outside = 0, first_outside = -1;
     image_to_voxel(image, inverse);
+    check_extent(tool, inverse, name, rows);
     for (int64_t p = 0; p < rows->points.count; p++) {
         double place[3] = {0, 0, image->to_world[2][3]}, voxel[3];
         double *value = rows->value + p * rows->cols + first;
         memcpy(place, rows->points.x + p * rows->points.dim, (size_t)rows->points.dim * sizeof *place);
         image_map(&inverse[0][0], place, voxel);
-        box_add(&box, 1, voxel);
         if (!image_sample(image, request->method, voxel, value) ||
             !are_good(request, value, image->components)) {
             first_outside = outside++ == 0 ? p : first_outside;
@@ -180,11 +199,6 @@ static void sample_image(const struct tool *tool, const struct request *request,
                 value[c] = request->outside;
             }
         }
-    }
-    if (request->points == NULL && rows->points.count > 1 && box_side(&box) < 1) {
-        tool_fail(tool, STATUS_INPUT,
-                  "%s: all points lie within %.2g of a voxel of %s: another space, or unit?",
-                  rows->points.what, box_side(&box), name);
     }
     if (outside == 0) {
         return;
@@ -346,6 +360,7 @@ int main(int argc, char *argv[])
             stage_fill(&tool, &stream, "ipoints");
         }
         points_of_section(&tool, &stream, request.at, &rows.points);
+        rows.box = box_of(rows.points.dim, rows.points.count, rows.points.x);
     }
     if (request.region != NULL) {
         points_in_regions(&tool, &stream, request.region, &rows.points);
