@@ -341,11 +341,18 @@ image = nib.load("two.nii.gz")
 value = np.asarray(image.dataobj)
 def save(name, value):
     nib.save(nib.Nifti1Image(value, None, image.header), name)
+save("none.nii", 0 * value)
+save("half.nii", value / 2)
+save("far.nii", value * 3e9)
 save("low.nii", value * (value == 1))
 save("mask.nii", 7 * (value == 2).astype(np.int16))
 save("whole.nii", value + (value == 2))
 END
     cmp <(voxels -h 6mm low.nii 3=mask.nii | mts print cells.region) <(voxels -h 6mm whole.nii | mts print cells.region)
+    voxels -h 6mm whole.nii 9=none.nii 2> said | mts print cells.region | cmp <(voxels -h 6mm whole.nii | mts print cells.region)
+    grep -qx "voxels: 9=none.nii: all voxels are 0: nothing of it lies on top" said
+    refused 2 "half.nii: voxel " voxels -h 6mm low.nii half.nii
+    refused 2 "labels are whole numbers from 0 to 2147483647" voxels -h 6mm low.nii far.nii
     refused 2 "sphere.nii.gz: another grid than that of the first image: resample it" voxels -h 6mm low.nii sphere.nii.gz
 }
 
@@ -384,12 +391,12 @@ END
     for kind in uint8 int16 single; do
         cmp <(mts print nodes.x whole.mts) <(voxels -h 3mm $kind.nii | mts print nodes.x)
     done
-    refused 2 "voxel 0 0 0 is 1.49999996e-05: labels are whole" voxels -h 3mm other.nii
+    refused 2 "voxel 0 0 0 is 1.499999962e-05: labels are whole" voxels -h 3mm other.nii
 }
 
 @test "images that are none of labels, impossible sizes, and tables: one clear line" {
     phantom sphere@scan > scan.nii.gz
-    refused 2 "labels are whole numbers from 0: is it a scan" voxels -h 6mm scan.nii.gz
+    refused 2 "labels are whole numbers from 0 to 2147483647: is it a scan" voxels -h 6mm scan.nii.gz
     phantom sphere@rgb > rgb.nii.gz
     refused 2 "3 values at each voxel: not a label image" voxels -h 6mm rgb.nii.gz
     phantom sphere@empty > empty.nii.gz

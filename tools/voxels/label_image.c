@@ -30,13 +30,14 @@ static int32_t place_of(const struct values *values, int64_t value, int32_t gues
                : (int32_t)first_from(values->value, 0, values->count, value);
 }
 
-static void fail_value(const struct tool *tool, const struct image *image, int64_t voxel)
+static void fail_value(const struct tool *tool, const char *name, const struct image *image, int64_t voxel)
 {
     int64_t nx = (int64_t)image->size[0], ny = (int64_t)image->size[1];
     tool_fail(
         tool, STATUS_INPUT,
-        "voxel %jd %jd %jd is %.9g: labels are whole numbers from 0: is it a scan or a probability map?",
-        (voxel % nx), (voxel / nx % ny), (voxel / nx / ny), image->values[voxel]);
+        "%s: voxel %jd %jd %jd is %.10g: labels are whole numbers from 0 to 2147483647: is it a scan or a "
+        "probability map?",
+        name, (voxel % nx), (voxel / nx % ny), (voxel / nx / ny), image->values[voxel]);
 }
 
 static void collect_values(const struct tool *tool, const struct image *image, struct values *values)
@@ -259,7 +260,7 @@ static void read_layer(const struct tool *tool, const char *text, struct image *
     for (size_t v = 0; v < image_voxels(image); v++) {
         double value = image_whole(image, image->values[v]);
         if (!(value >= 0 && value <= INT32_MAX)) {
-            fail_value(tool, image, (int64_t)v);
+            fail_value(tool, text, image, (int64_t)v);
         }
         image->values[v] = mask && value > 0 ? (double)label : value;
     }
@@ -297,8 +298,13 @@ static void read_layers(const struct tool *tool, char *const *files, struct imag
         if (layer.segment_count > 0) {
             tool_fail(tool, STATUS_INPUT, "%s: a segmentation on top of others: give it first", files[f]);
         }
+        bool empty = true;
         for (size_t v = 0; v < image_voxels(image); v++) {
+            empty = empty && layer.values[v] == 0;
             image->values[v] = layer.values[v] > 0 ? layer.values[v] : image->values[v];
+        }
+        if (empty) {
+            tool_note(tool, "%s: all voxels are 0: nothing of it lies on top", files[f]);
         }
     }
 }
