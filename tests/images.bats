@@ -301,9 +301,13 @@ END
         for place in '-0.51 0 0' '2.51 1 1' '1 1 1.6' '0 -7 0'; do
             refused 2 'outside of 1.nii' sample -i $method -u mm -p <(echo "$place") 1.nii
         done
-        [ "$method" = cubic ] || sample -i $method -u mm -p <(printf '%s\n' '-0.4 -0.4 -0.4' '2.4 1.3 1.4') 1.nii 2> note | awk '!/^#/ { print $4 }' |
+        sample -i $method -u mm -p <(printf '%s\n' '-0.4 -0.4 -0.4' '2.4 1.3 1.4') 1.nii 2> note | awk '!/^#/ { print $4 }' |
             cmp - <(sed -n '1p; $p' 1.txt)
     done
+    /usr/bin/python3 -c 'import nibabel as n, numpy as m; x, y, z = m.mgrid[:4, :3, :2]
+n.save(n.Nifti1Image(x * x - x * y + 2 * y * y + 7.0 * z, m.eye(4)), "quadratic.nii")'
+    printf '%s\n' '0.3 0.2 0.5' '2.6 1.7 0.9' '1.5 0.5 0.1' > places
+    sample -i cubic -u mm -p places quadratic.nii 2> note | awk '!/^#/ { n++; d = $4 - ($1 * $1 - $1 * $2 + 2 * $2 * $2 + 7 * $3); bad += d * d > 1e-18 } END { exit bad || n != 3 }'
     printf '%s\n' '1.45 0.55 0.45' | values 1.nii /dev/stdin | cmp - <(sed -n 5p 1.txt)
     sample -u mm -p <(echo 1 0 0) 2.nii 2> note | awk 'NR == 2 { large = $4 > 1e300 } END { exit !large }'
     refused 2 'not finite there' sample -u mm -p <(echo 0.5 0 0) 2.nii

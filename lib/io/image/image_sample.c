@@ -13,25 +13,39 @@ struct taps {
     double weight[4];
 };
 
-static size_t clamped(int64_t index, size_t size)
+/* Give the weight of the value beyond the border to those beside it, whose quadratic it continues (Keys
+ * 1981).
+ */
+static void fold(double *beyond, int step)
 {
-    return index < 0 ? 0 : (size_t)index >= size ? size - 1 : (size_t)index;
+    beyond[step] += 3 * *beyond;
+    beyond[2 * step] -= 3 * *beyond;
+    beyond[3 * step] += *beyond;
+    *beyond = 0;
 }
 
 static void find_taps(enum image_method method, double place, size_t size, struct taps *taps)
 {
+    method = method == IMAGE_CUBIC && size < 3 ? IMAGE_LINEAR : method;
+    place = fmin(fmax(place, 0), (double)size - 1);
     place = fabs(place - rint(place)) < COARSE_ROUND_OFF ? rint(place) : place;
     double low = method == IMAGE_NEAREST ? floor(place + 0.5) : floor(place), t = place - low;
     int64_t first = (int64_t)low - (method == IMAGE_CUBIC ? 1 : 0);
     double cubic[4] = {t * (-0.5 + t * (1 - 0.5 * t)), 1 + t * t * (-2.5 + 1.5 * t),
                        t * (0.5 + t * (2 - 1.5 * t)), t * t * (-0.5 + 0.5 * t)};
+    if (first < 0) {
+        fold(cubic, 1);
+    }
+    if (first + 3 == (int64_t)size) {
+        fold(cubic + 3, -1);
+    }
     double linear[2] = {1 - t, t};
     int width = method == IMAGE_NEAREST ? 1 : method == IMAGE_LINEAR ? 2 : 4;
     taps->count = 0;
     for (int i = 0; i < width; i++) {
         double weight = width == 1 ? 1 : width == 2 ? linear[i] : cubic[i];
         if (weight != 0) { /* so that at a voxel centre neighbours that are NaN have no effect */
-            taps->index[taps->count] = clamped(first + i, size);
+            taps->index[taps->count] = (size_t)(first + i);
             taps->weight[taps->count++] = weight;
         }
     }
