@@ -101,7 +101,7 @@ $(CONVERGENCE)/$(1)-$(2)-$(3).time: $(CONVERGENCE_INPUT)/$(1).scene $(CONVERGENC
 $(CONVERGENCE)/$(1)-$(2)-$(3).errors: $(CONVERGENCE)/$(1)-$(2)-$(3).time $(CONVERGENCE)/$(1).reference.dat
 	fieldcmp $$(<:.time=.dat) $$(lastword $$^) > $$@
 endef
-$(foreach c,$(CONVERGENCE_ALL_CASES),$(foreach m,$(call schemes,$(c)),$(foreach s,$($($(c).mesh).sizes),$(eval $(call CONVERGENCE_SOLUTION,$(c),$(m),$(s))))))
+$(foreach c,$(CONVERGENCE_ALL_CASES),$(foreach m,$(call schemes,$(c)) dolfinx,$(foreach s,$($($(c).mesh).sizes),$(eval $(call CONVERGENCE_SOLUTION,$(c),$(m),$(s))))))
 
 define CONVERGENCE_REFERENCE
 $(CONVERGENCE)/$(1).reference.dat: $($(1).reference) pipelines/reference.awk

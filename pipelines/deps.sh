@@ -5,7 +5,7 @@
 # CalculiX and FreeFEM (with a BLAS that does it justice) are for comparison only: the studies need them, no program does. Python's
 # are for the tests, which read what tovtk and warp write; plastimatch applies a field of warp to a scan. mricron-data has the scan of a
 # head for make neurosurgery. Bodies are drawn on the screen of xvfb: where it alone is missing and cannot be had, all else works.
-# deps.sh lint, deps.sh fuzz: what make lint and make fuzz need, which nothing else does.
+# deps.sh lint, fuzz, dolfinx: what make lint, make fuzz and make speed-error need, which nothing else does.
 set -eu -o pipefail
 
 # program:package
@@ -19,6 +19,10 @@ fuzz)
     version=$(apt-cache depends clang 2> /dev/null | sed -n 's/.*Depends: clang-\([0-9]*\)$/\1/p')
     programs=(clang:clang)
     libraries=(libomp-dev "libclang-rt-$version-dev")
+    ;;
+dolfinx) # the peer of make speed-error; some hundred packages
+    programs=()
+    libraries=(python3-dolfinx)
     ;;
 *)
     programs=(gcc:gcc make:make pkg-config:pkg-config gmsh:gmsh gnuplot:gnuplot-nox ccx:calculix-ccx

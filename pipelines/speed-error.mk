@@ -7,12 +7,16 @@
 
 SPEED_ERROR := $(OUT)/speed-error
 SPEED_ERROR_CASES := brain block10 block20 block20_4999 block10_graded cube cube_4999 cube_graded
-SPEED_ERROR_NAMES := $(call convergence_names,$(SPEED_ERROR_CASES))
-SPEED_ERROR_FORCES := $(call convergence_names,$(filter-out brain,$(SPEED_ERROR_CASES)))
+SPEED_ERROR_DOLFINX := $(foreach c,$(filter-out brain,$(SPEED_ERROR_CASES)),$(addprefix $(c)-dolfinx-,$($($(c).mesh).sizes)))
+SPEED_ERROR_NAMES := $(call convergence_names,$(SPEED_ERROR_CASES)) $(SPEED_ERROR_DOLFINX)
+SPEED_ERROR_FORCES := $(call convergence_names,$(filter-out brain,$(SPEED_ERROR_CASES))) $(SPEED_ERROR_DOLFINX)
 
-.PHONY: speed-error
+.PHONY: speed-error deps-dolfinx
+deps-dolfinx:
+	bash pipelines/deps.sh dolfinx
+
 speed-error: $(SPEED_ERROR)/speed-error.tsv $(SPEED_ERROR)/reach.tsv $(SPEED_ERROR)/speed-error.png
-	@awk -F '\t' '{ printf "%-14s %-9s %7s %7s %10s %8s %8s %14s %10s %9s\n", $$1, $$2, $$3, $$4, $$5, $$6, $$7, $$8, $$9, $$10 }' $<
+	@awk -F '\t' '{ printf "%-14s %-9s %7s %7s %10s %8s %8s %14s %10s\n", $$1, $$2, $$3, $$4, $$5, $$6, $$7, $$8, $$9 }' $<
 	@echo
 	@awk -F '\t' '{ printf "%-14s %-13s %14s %16s %16s %16s\n", $$1, $$2, $$3, $$4, $$5, $$6 }' $(SPEED_ERROR)/reach.tsv
 	$(PICTURES)

@@ -6,11 +6,11 @@ set terminal pngcairo size 420 * columns, 400 * lines + 60 font "DejaVu Sans,12"
 set output out
 set datafile separator "\t"
 name(s) = s eq "mls1" ? "linear MLS (paper)" : s eq "mmls" ? "MMLS (paper)" : s eq "default" ? "default" : \
-    s eq "mixed" ? "mixed elements" : "CalculiX"
-colour(s) = s eq "default" ? "#b5367a" : s eq "mixed" ? "#2874a6" : s eq "calculix" ? "#e0a030" : s eq "mls1" ? "#909090" : "#404040"
+    s eq "mixed" ? "mixed elements (FreeFEM)" : s eq "dolfinx" ? "mixed elements (dolfinx)" : "CalculiX"
+colour(s) = s eq "default" ? "#b5367a" : s eq "mixed" ? "#2874a6" : s eq "dolfinx" ? "#2e8b57" : s eq "calculix" ? "#e0a030" : s eq "mls1" ? "#909090" : "#404040"
 found = " ".system(sprintf("cut -f 2 '%s' | sort -u | tr '\\n' ' '", data))
 there = ""
-do for [s in "mls1 mmls default mixed calculix"] {
+do for [s in "mls1 mmls default mixed dolfinx calculix"] {
     if (strstrt(found, " ".s." ") > 0) { there = there." ".s }
 }
 set logscale xy

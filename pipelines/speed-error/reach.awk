@@ -1,13 +1,11 @@
 # reach.tsv: awk -f reach.awk speed-error.tsv: the time to an error of 1 %, .3 % and .1 %, and to CalculiX's least error, all of it
 # (total_s) and, at the end, that of the solution (solve_s), on straight lines between the sizes in log-log. "<" where the coarsest is
-# better already, ">" where the finest is not good enough. The scheme mixed_solver is what the direct solver takes of mixed: no
-# program that makes the same Newton steps with it is quicker, however it makes its matrices.
+# better already, ">" where the finest is not good enough.
 
 BEGIN { FS = OFS = "\t" }
 NR == 1 { next }
 {
     add($1 OFS $2, $7, $6, $8)
-    if ($10 != "-" && $10 != "") add($1 OFS $2 "_solver", $10, $10, $8)
     if ($2 == "calculix" && (!($1 in best) || $8 < best[$1])) best[$1] = $8
 }
 END {

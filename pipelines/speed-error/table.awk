@@ -1,10 +1,10 @@
 # speed-error.tsv: awk -f table.awk CASE-SCHEME-SIZE.errors ..., what fieldcmp prints; .time lies beside each, and .force, the
-# components of a force, the last of which is told. solver_s: the direct solver's part of solve_s, where that is known.
+# components of a force, the last of which is told.
 
 BEGIN {
     FS = "[ \t]+"
     OFS = "\t"
-    print "case", "scheme", "h", "nodes", "prepare_s", "solve_s", "total_s", "error_percent", "force_N", "solver_s"
+    print "case", "scheme", "h", "nodes", "prepare_s", "solve_s", "total_s", "error_percent", "force_N"
 }
 
 FNR == 1 { tell(); file = FILENAME; error = "-" }
@@ -26,5 +26,5 @@ function tell(    name, part, word, line, told, beside, force) {
         force = sprintf("%.6g", force < 0 ? -force : force)
     }
     print part[1], part[2], part[3], told["nodes"], sprintf("%.3f", told["prepare"]), sprintf("%.3f", told["solve"]),
-        sprintf("%.3f", told["prepare"] + told["solve"]), sprintf("%.4f", error), force, ("solver" in told ? sprintf("%.3f", told["solver"]) : "-")
+        sprintf("%.3f", told["prepare"] + told["solve"]), sprintf("%.4f", error), force
 }
