@@ -1,7 +1,7 @@
-# make gallery: examples that others can judge, each with a picture: a liver (make liver), with and without its capsule (make capsule), a bar of silicone whose bending was
-# measured (make phantom), a probe pressed into tissue beside Hertz (make indentation), a needle with friction (make needle),
-# brain tissue compressed at three rates (make compression), and a
-# ventricle with fibres that contracts (make ventricle).
+# make gallery: examples that others can judge, with pictures: make liver, capsule, phantom, indentation, needle, compression, ventricle
+#
+# A liver, with and without its capsule; a bar of silicone whose bending was measured; a probe pressed into tissue beside Hertz; a needle
+# with friction; brain tissue compressed at three rates; a ventricle with fibres that contracts.
 
 GALLERY := $(OUT)/gallery
 LIVER := examples/liver

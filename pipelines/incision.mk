@@ -1,4 +1,4 @@
-# make incision: cuts with known answers: a slit and a penny-shaped crack that open, made by incise and in the mesh, a body cut through beside its parts, a cut that contact closes; 100 random cuts, pairs that cross among them; and a cut that goes on through a liver in five advances
+# make incision: cuts with known answers, made by incise and in the mesh; cuts that contact closes; 100 random cuts, some that cross; one that advances through a liver
 #
 # incision.tsv has a row for each, blades/blades.tsv one for each random cut, profile.png the openings; advances.png is a row of pictures (examples/liver/cut.sh), retraction.png has fifteen frames of faces drawn apart.
 
