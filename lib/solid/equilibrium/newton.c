@@ -20,12 +20,12 @@ static enum status measure(struct newton *n, struct error *error)
 {
     struct preconditioner *p = &n->preconditioner;
     int64_t before = n->report->force_evaluations;
-    system_relaxation_mass(n->system, false, n->scaled);
-    preconditioner_set_mass(p, n->scaled);
+    system_relaxation_mass(n->system, false, n->cg.scaled);
+    preconditioner_set_mass(p, n->cg.scaled);
     RETURN_IF_ERROR(preconditioner_measure(p, n->system, n->u, &n->report->force_evaluations, error));
-    n->cost = 1 + n->report->force_evaluations - before;
-    n->excess = 0.0;
-    n->usual = n->lowest = INFINITY;
+    n->rate.cost = 1 + n->report->force_evaluations - before;
+    n->rate.excess = 0.0;
+    n->rate.usual = n->verdict.lowest = INFINITY;
     preconditioner_follow(p, n->system);
     return STATUS_OK;
 }
@@ -34,20 +34,21 @@ static enum status measure(struct newton *n, struct error *error)
 static bool goes_on(struct newton *n, struct error *error)
 {
     system_slide(n->system);
-    n->rests = true;
-    n->uphill = 0; /* as at every equilibrium */
-    n->above = 0.0;
-    n->best_error = INFINITY; /* which is progress */
-    n->best_step = n->report->steps;
-    n->failure = n->load == n->hold ? newton_give_frame(n, error) : STATUS_OK;
-    return n->failure == STATUS_OK && n->load < 1.0;
+    n->friction.rests = true;
+    n->watch.steps = 0; /* as at every equilibrium */
+    n->watch.above = 0.0;
+    n->progress.error = INFINITY; /* which is progress */
+    n->progress.step = n->report->steps;
+    n->failure = n->load.now == n->load.hold ? newton_give_frame(n, error) : STATUS_OK;
+    return n->failure == STATUS_OK && n->load.now < 1.0;
 }
 
 /* Whether the load grows in the next step. */
 static bool loads(const struct newton *n)
 {
-    return n->load < n->hold && n->uphill == 0 &&
-           (n->slides ? n->rests : n->report->error < (n->waits ? error_waiting : NEWTON_ERROR_BETWEEN));
+    return n->load.now < n->load.hold && n->watch.steps == 0 &&
+           (n->friction.slides ? n->friction.rests
+                               : n->report->error < (n->load.waits ? error_waiting : NEWTON_ERROR_BETWEEN));
 }
 
 /* The next step: an increment of the load, or a correction. The preconditioner is made anew once the products
@@ -55,28 +56,28 @@ static bool loads(const struct newton *n)
 static bool step(struct newton *n, struct error *error)
 {
     n->report->steps++;
-    n->failure = n->excess > (double)n->cost ? measure(n, error) : STATUS_OK;
+    n->failure = n->rate.excess > (double)n->rate.cost ? measure(n, error) : STATUS_OK;
     if (n->failure != STATUS_OK) {
         return false;
     }
     if (loads(n)) {
-        double from = n->load, change = fmin(n->load_change, n->hold - from);
+        double from = n->load.now, change = fmin(n->load.next, n->load.hold - from);
         if (newton_begin_increment(n, from, change)) {
-            n->waits = false;
+            n->load.waits = false;
             return newton_take_increment(n, from, change);
         }
         newton_set_load(n, from, from);
         (void)newton_evaluate(n, n->u, &n->at_u);
-        if (n->slides) { /* instead of what was predicted */
+        if (n->friction.slides) { /* instead of what was predicted */
             system_accept(n->system);
             newton_touch(n, n->u, &n->at_u);
         }
-        n->load_change = 0.5 * change;
-        n->corrections++;
-        n->waits = true;
+        n->load.next = 0.5 * change;
+        n->load.corrections++;
+        n->load.waits = true;
         return n->report->error < error_waiting ? newton_leave(n) : newton_correct(n);
     }
-    n->corrections++;
+    n->load.corrections++;
     return newton_correct(n);
 }
 
@@ -86,7 +87,7 @@ static enum statics_outcome iterate(struct newton *n, struct error *error)
     int64_t most = n->options->most_steps > 0 ? n->options->most_steps : usual_most_steps;
     while (n->report->steps < most) {
         bool stuck = !step(n, error);
-        if (n->failure != STATUS_OK || (stuck && n->collapses)) {
+        if (n->failure != STATUS_OK || (stuck && n->step.collapses)) {
             return n->failure != STATUS_OK ? STATICS_STOPPED : STATICS_INVERTED;
         }
         if (stuck) { /* the steps tried were evaluated last */
@@ -94,7 +95,7 @@ static enum statics_outcome iterate(struct newton *n, struct error *error)
         }
         newton_augment(n);
         newton_estimate(n);
-        if (n->sticks && n->report->error <= n->options->tolerance) {
+        if (n->friction.sticks && n->report->error <= n->options->tolerance) {
             newton_let_slip(n);
             newton_estimate(n);
         }
@@ -118,8 +119,8 @@ static enum statics_outcome iterate(struct newton *n, struct error *error)
 static enum status begin(struct newton *n, struct error *error)
 {
     struct solid_system *system = n->system;
-    n->load = system->rows.start == NULL && system_begins_loaded(system) ? -1.0 : 0.0;
-    system_load_factors(system, n->load);
+    n->load.now = system->rows.start == NULL && system_begins_loaded(system) ? -1.0 : 0.0;
+    system_load_factors(system, n->load.now);
     system_measure_contacts(system, n->u, true);
     system_accept(system);
     if (n->options->frame != NULL && n->options->frames > 0 && !n->options->in_time) {
@@ -128,11 +129,11 @@ static enum status begin(struct newton *n, struct error *error)
     }
     constraint_project(&n->preconditioner.constraint, system->factor, n->u);
     (void)newton_evaluate(n, n->u, &n->at_u);
-    n->radius = fmin(n->spacing, n->longest_step);
-    n->load_change = n->most_change;
-    n->hold = statics_load_to_hold(n->options, 0);
-    n->rests = true;
-    n->nearest_error = n->pressures_lack = INFINITY;
+    n->step.radius = fmin(n->scale.spacing, n->scale.longest_step);
+    n->load.next = n->load.most;
+    n->load.hold = statics_load_to_hold(n->options, 0);
+    n->friction.rests = true;
+    n->near.error = n->verdict.pressures_lack = INFINITY;
     return measure(n, error);
 }
 
@@ -155,21 +156,22 @@ enum status newton_run(struct solid_system *system, const struct statics_options
                        .report = report,
                        .size = system->node_count * system->dim,
                        .slackens = body_slackens(&system->body),
-                       .slides = system_has_friction(system),
+                       .friction = {.slides = system_has_friction(system)},
                        .u = u,
                        .row_force = row_force};
     struct box box = box_of(system->dim, system->node_count, system->X);
     *report = (struct statics_report){.least_jacobian = 1.0};
     body_limit_bulk(&system->body, STATICS_BULK_LIMIT);
     RETURN_IF_ERROR(newton_allocate(&n, error));
-    n.spacing = system_node_spacing(system);
-    n.body_size = box_diagonal(&box);
-    n.round_off = statics_round_off(system);
-    n.most_change = 1.0 / fmax(1.0, ceil(system_longest_change(system) / (prescribed_spacings * n.spacing)));
-    n.longest_step = most_of_size * n.body_size;
+    n.scale.spacing = system_node_spacing(system);
+    n.scale.body = box_diagonal(&box);
+    n.scale.round_off = statics_round_off(system);
+    n.load.most =
+        1.0 / fmax(1.0, ceil(system_longest_change(system) / (prescribed_spacings * n.scale.spacing)));
+    n.scale.longest_step = most_of_size * n.scale.body;
     RETURN_IF_ERROR(options->restored != NULL ? resume(&n, error) : begin(&n, error));
     report->outcome = iterate(&n, error);
     RETURN_IF_ERROR(n.failure);
-    report->load = statics_load_share(system, n.load);
+    report->load = statics_load_share(system, n.load.now);
     return report->outcome == STATICS_CONVERGED ? STATUS_OK : newton_row_forces(&n, error);
 }

@@ -54,14 +54,14 @@ void newton_conjugate(struct newton *n)
     directions->part = 0.0;
     for (int before = newton_directions_kept(directions) - 1; before >= 0; before--) {
         int k = newton_direction(directions, before);
-        double along = vector_product(n->size, directions->move[k], n->product);
+        double along = vector_product(n->size, directions->move[k], n->cg.product);
         if (n->system->contact_count > 0) {
-            along += vector_product(n->size, directions->contact[k], n->search);
+            along += vector_product(n->size, directions->contact[k], n->cg.search);
         }
         double part = directions->part = -along / directions->curvature[k];
         for (int64_t i = 0; i < n->size; i++) {
-            n->search[i] += part * directions->move[k][i];
-            n->product[i] += part * directions->product[k][i];
+            n->cg.search[i] += part * directions->move[k][i];
+            n->cg.product[i] += part * directions->product[k][i];
         }
     }
 }
@@ -73,7 +73,7 @@ void newton_keep_direction(struct newton *n, const double *move, const double *l
     int k = newton_direction(directions, 0);
     size_t bytes = (size_t)n->size * sizeof *move;
     memcpy(directions->move[k], move, bytes);
-    memcpy(directions->product[k], n->product, bytes);
+    memcpy(directions->product[k], n->cg.product, bytes);
     if (lost != NULL) {
         memcpy(directions->contact[k], lost, bytes);
     }
@@ -90,7 +90,7 @@ void newton_descend_again(struct newton *n)
                       vector_product(n->size, move, n->model.contact)) /
                      directions->curvature[k];
         for (int64_t i = 0; i < n->size; i++) {
-            n->step[i] += way * move[i];
+            n->step.move[i] += way * move[i];
             n->model.smooth[i] -= way * directions->product[k][i];
             n->model.contact[i] -= way * directions->contact[k][i];
         }

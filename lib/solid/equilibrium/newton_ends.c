@@ -19,7 +19,7 @@ static const int64_t most_vain = 12; /* corrections in which the error has not h
 
 static bool contacts_lack(const struct newton *n)
 {
-    return n->report->move > n->round_off &&
+    return n->report->move > n->scale.round_off &&
            system_contacts_give_way(n->system, n->u, n->report->move, n->options->tolerance);
 }
 
@@ -31,21 +31,21 @@ static double most_lack(const struct newton *n)
 
 bool newton_has_pressures(const struct newton *n)
 {
-    return !body_is_limited(&n->system->body) || n->pressures_lack <= most_lack(n);
+    return !body_is_limited(&n->system->body) || n->verdict.pressures_lack <= most_lack(n);
 }
 
 void newton_augment(struct newton *n)
 {
-    if (n->uphill > 0) {
+    if (n->watch.steps > 0) {
         return;
     }
-    bool near = n->corrections > 0 && n->length < most_length * n->report->move;
+    bool near = n->load.corrections > 0 && n->step.length < most_length * n->report->move;
     bool pressures = near && body_is_limited(&n->system->body);
-    n->gives_way = n->system->contact_count > 0 && contacts_lack(n);
-    bool contacts = n->system->contact_count > 0 && (n->corrections <= 1 || n->gives_way);
+    n->verdict.gives_way = n->system->contact_count > 0 && contacts_lack(n);
+    bool contacts = n->system->contact_count > 0 && (n->load.corrections <= 1 || n->verdict.gives_way);
     if (pressures) {
-        n->pressures_lack =
-            body_augment(&n->system->body, n->corrections > 1, most_lack(n), n->report->move / n->body_size);
+        n->verdict.pressures_lack = body_augment(&n->system->body, n->load.corrections > 1, most_lack(n),
+                                                 n->report->move / n->scale.body);
     }
     if (contacts) {
         system_augment_contacts(n->system);
@@ -62,24 +62,25 @@ void newton_augment(struct newton *n)
 /* The least eigenvalue by which the error is estimated, in units of the preconditioner's. */
 static double lowest_of(const struct newton *n)
 {
-    return isinf(n->lowest) ? NEWTON_LEAST_TOLD : fmin(1.0, fmax(n->lowest, NEWTON_LEAST_TOLD));
+    return isinf(n->verdict.lowest) ? NEWTON_LEAST_TOLD
+                                    : fmin(1.0, fmax(n->verdict.lowest, NEWTON_LEAST_TOLD));
 }
 
 /* What round-off of positions admits of the estimated error. */
 static double admitted(const struct newton *n)
 {
-    return n->round_off / (lowest_of(n) * n->report->move);
+    return n->scale.round_off / (lowest_of(n) * n->report->move);
 }
 
 void newton_estimate(struct newton *n)
 {
     struct statics_report *report = n->report;
     double square = newton_square(n, &n->at_u), move = newton_longest(n, n->u, NULL);
-    n->largest_move = fmax(n->largest_move, move);
-    report->move = fmax(move, n->options->tolerance * n->largest_move);
-    double error = newton_longest(n, n->scaled, &report->worst_node) / lowest_of(n);
-    bool at_rest = report->move <= n->round_off || !(square > 0.0);
-    report->lost = at_rest && error > DBL_EPSILON * n->body_size;
+    n->progress.largest_move = fmax(n->progress.largest_move, move);
+    report->move = fmax(move, n->options->tolerance * n->progress.largest_move);
+    double error = newton_longest(n, n->cg.scaled, &report->worst_node) / lowest_of(n);
+    bool at_rest = report->move <= n->scale.round_off || !(square > 0.0);
+    report->lost = at_rest && error > DBL_EPSILON * n->scale.body;
     report->error = !isfinite(square) ? INFINITY : at_rest ? 0.0 : error / report->move;
 }
 
@@ -88,20 +89,21 @@ void newton_estimate(struct newton *n)
 static int64_t note_progress(struct newton *n)
 {
     struct statics_report *report = n->report;
-    bool halved = report->error < 0.5 * n->best_error && !n->sticks;
+    bool halved = report->error < 0.5 * n->progress.error && !n->friction.sticks;
     for (int64_t i = 0; i < n->size; i++) {
-        n->product[i] = n->u[i] - n->marked[i];
+        n->cg.product[i] = n->u[i] - n->progress.u[i];
     }
-    bool moved = newton_longest(n, n->product, NULL) > moves_on * report->move && !newton_held_by_friction(n);
-    bool better = n->load > n->best_load + least_growth || report->steps == 1 || halved;
-    n->moves = better ? 0 : n->moves + moved;
-    if (better || (moved && n->moves <= most_moves)) {
-        n->best_load = n->load;
-        n->best_error = better ? report->error : n->best_error;
-        memcpy(n->marked, n->u, (size_t)n->size * sizeof *n->u);
-        n->best_step = report->steps;
+    bool moved =
+        newton_longest(n, n->cg.product, NULL) > moves_on * report->move && !newton_held_by_friction(n);
+    bool better = n->load.now > n->progress.load + least_growth || report->steps == 1 || halved;
+    n->progress.moves = better ? 0 : n->progress.moves + moved;
+    if (better || (moved && n->progress.moves <= most_moves)) {
+        n->progress.load = n->load.now;
+        n->progress.error = better ? report->error : n->progress.error;
+        memcpy(n->progress.u, n->u, (size_t)n->size * sizeof *n->u);
+        n->progress.step = report->steps;
     }
-    return report->steps - n->best_step;
+    return report->steps - n->progress.step;
 }
 
 /* Whether u is the equilibrium at this load. */
@@ -109,9 +111,9 @@ static bool is_found(struct newton *n, bool vain, struct error *error)
 {
     struct statics_report *report = n->report;
     double most = n->options->tolerance;
-    if ((report->error <= most || (vain && isinf(n->lowest))) && !n->judged) {
+    if ((report->error <= most || (vain && isinf(n->verdict.lowest))) && !n->verdict.judged) {
         n->failure = newton_judge_stability(n, error);
-        n->judged = true;
+        n->verdict.judged = true;
         newton_estimate(n);
     }
     if (vain) {
@@ -129,9 +131,10 @@ static bool is_found(struct newton *n, bool vain, struct error *error)
 bool newton_ends(struct newton *n, bool stuck, enum statics_outcome *outcome, struct error *error)
 {
     int64_t vain = note_progress(n);
-    bool holds = n->slides || n->load == n->hold;
-    bool found = n->corrections > 0 && holds && !n->sticks && is_found(n, stuck || vain > most_vain, error);
-    bool away = statics_is_away(n->system, n->report, n->body_size);
+    bool holds = n->friction.slides || n->load.now == n->load.hold;
+    bool found = n->load.corrections > 0 && holds && !n->friction.sticks &&
+                 is_found(n, stuck || vain > most_vain, error);
+    bool away = statics_is_away(n->system, n->report, n->scale.body);
     *outcome = found                                ? STATICS_CONVERGED
                : away || newton_held_by_friction(n) ? STATICS_AWAY
                                                     : STATICS_STALLED;

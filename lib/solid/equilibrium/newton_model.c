@@ -46,7 +46,7 @@ struct deformation newton_evaluate(struct newton *n, const double *u, struct new
 double newton_difference(const struct newton *n, const double *move)
 {
     double longest = newton_longest(n, move, NULL);
-    return DIFFERENCE_STEP * n->spacing / (longest > 0.0 ? longest : 1.0);
+    return DIFFERENCE_STEP * n->scale.spacing / (longest > 0.0 ? longest : 1.0);
 }
 
 /* The forces at u + way move, without contacts. */
@@ -78,8 +78,8 @@ static void multiply(struct newton *n, const double *move, double *product)
 
 double newton_curvature(struct newton *n)
 {
-    multiply(n, n->search, n->product);
-    double curvature = vector_product(n->size, n->search, n->product);
+    multiply(n, n->cg.search, n->cg.product);
+    double curvature = vector_product(n->size, n->cg.search, n->cg.product);
     (void)newton_evaluate(n, n->u, &n->at_u);
     return curvature;
 }
@@ -88,7 +88,7 @@ double newton_curvature(struct newton *n)
 static void touch(struct newton *n, double share)
 {
     for (int64_t i = 0; i < n->size; i++) {
-        n->trial[i] = n->u[i] + n->step[i] + share * n->search[i];
+        n->trial[i] = n->u[i] + n->step.move[i] + share * n->cg.search[i];
     }
     newton_touch(n, n->trial, &n->model);
 }
@@ -100,8 +100,8 @@ static double scale_gradient(struct newton *n)
     for (int64_t i = 0; i < n->size; i++) {
         gradient[i] = n->model.smooth[i] + n->model.contact[i];
     }
-    preconditioner_apply(&n->preconditioner, gradient, n->scaled);
-    return vector_product(n->size, gradient, n->scaled);
+    preconditioner_apply(&n->preconditioner, gradient, n->cg.scaled);
+    return vector_product(n->size, gradient, n->cg.scaled);
 }
 
 /* Along the search direction the model falls by `down` at first, and contacts apart by `slope` less `bend`
@@ -115,7 +115,7 @@ static double search_along(struct newton *n, double down, double slope, double b
     }
     for (int turn = 0;; turn++) {
         touch(n, way);
-        double at = slope - way * bend + vector_product(n->size, n->search, n->model.contact);
+        double at = slope - way * bend + vector_product(n->size, n->cg.search, n->model.contact);
         if (fabs(at) <= slope_left * down || (at > 0.0 && way >= most) || turn == MOST_TURNS) {
             return way;
         }
@@ -138,11 +138,11 @@ static double turn_search(struct newton *n)
     for (;;) {
         double down = 0.0;
         bool alone = n->directions.count == 0;
-        memcpy(n->search, n->scaled, (size_t)n->size * sizeof *n->search);
-        multiply(n, n->search, n->product);
+        memcpy(n->cg.search, n->cg.scaled, (size_t)n->size * sizeof *n->cg.search);
+        multiply(n, n->cg.search, n->cg.product);
         newton_conjugate(n);
         for (int64_t i = 0; i < n->size; i++) {
-            down += n->search[i] * (n->model.smooth[i] + n->model.contact[i]);
+            down += n->cg.search[i] * (n->model.smooth[i] + n->model.contact[i]);
         }
         if (down > 0.0 || alone) {
             return down;
@@ -156,25 +156,25 @@ static double turn_search(struct newton *n)
 static void begin_model(struct newton *n)
 {
     memcpy(n->model.smooth, n->at_u.smooth, (size_t)n->size * sizeof *n->model.smooth);
-    if (newton_longest(n, n->step, NULL) > 0.0) {
-        multiply(n, n->step, n->product);
-        add_scaled((int)n->size, -1.0, n->product, n->model.smooth);
+    if (newton_longest(n, n->step.move, NULL) > 0.0) {
+        multiply(n, n->step.move, n->cg.product);
+        add_scaled((int)n->size, -1.0, n->cg.product, n->model.smooth);
     }
     constraint_project(&n->preconditioner.constraint, NULL, n->model.smooth);
-    memset(n->search, 0, (size_t)n->size * sizeof *n->search);
+    memset(n->cg.search, 0, (size_t)n->size * sizeof *n->cg.search);
     newton_forget_directions(n);
     touch(n, 0.0);
 }
 
 double newton_square(struct newton *n, const struct newton_forces *forces)
 {
-    memcpy(n->product, forces->smooth, (size_t)n->size * sizeof *n->product);
-    constraint_project(&n->preconditioner.constraint, NULL, n->product);
+    memcpy(n->cg.product, forces->smooth, (size_t)n->size * sizeof *n->cg.product);
+    constraint_project(&n->preconditioner.constraint, NULL, n->cg.product);
     for (int64_t i = 0; i < n->size; i++) {
-        n->product[i] += n->system->contact_count > 0 ? forces->contact[i] : 0.0;
+        n->cg.product[i] += n->system->contact_count > 0 ? forces->contact[i] : 0.0;
     }
-    preconditioner_apply(&n->preconditioner, n->product, n->scaled);
-    return vector_product(n->size, n->product, n->scaled);
+    preconditioner_apply(&n->preconditioner, n->cg.product, n->cg.scaled);
+    return vector_product(n->size, n->cg.product, n->cg.scaled);
 }
 
 /* Lanczos's matrix of M^-1 K, from conjugate gradients. */
@@ -206,11 +206,11 @@ static double least_eigenvalue(const struct lanczos *l)
 static void note_products(struct newton *n, int products, double fallen, const struct lanczos *lanczos)
 {
     double least = least_eigenvalue(lanczos);
-    n->lowest = least > 0.0 ? fmin(n->lowest, least) : n->lowest;
+    n->verdict.lowest = least > 0.0 ? fmin(n->verdict.lowest, least) : n->verdict.lowest;
     if (products > 0 && fallen < 1.0) {
         double rate = -2.0 * products / log(fallen);
-        n->usual = fmin(n->usual, rate);
-        n->excess += products * (1.0 - n->usual / rate);
+        n->rate.usual = fmin(n->rate.usual, rate);
+        n->rate.excess += products * (1.0 - n->rate.usual / rate);
     }
 }
 
@@ -218,24 +218,25 @@ static void note_products(struct newton *n, int products, double fallen, const s
  * keep it. Returns the way. The model falls by `down` at first. */
 static double lower(struct newton *n, double down, double most)
 {
-    double curvature = vector_product(n->size, n->search, n->product);
-    double *lost = n->system->contact_count > 0 ? n->scaled : NULL;
+    double curvature = vector_product(n->size, n->cg.search, n->cg.product);
+    double *lost = n->system->contact_count > 0 ? n->cg.scaled : NULL;
     if (lost != NULL) {
         memcpy(lost, n->model.contact, (size_t)n->size * sizeof *lost);
     }
-    double way = search_along(n, down, vector_product(n->size, n->search, n->model.smooth), curvature, most);
+    double way =
+        search_along(n, down, vector_product(n->size, n->cg.search, n->model.smooth), curvature, most);
     for (int64_t i = 0; i < n->size; i++) {
-        n->step[i] += way * n->search[i];
-        n->model.smooth[i] -= way * n->product[i];
+        n->step.move[i] += way * n->cg.search[i];
+        n->model.smooth[i] -= way * n->cg.product[i];
     }
     if (lost != NULL) {
         for (int64_t i = 0; i < n->size; i++) {
             lost[i] = (lost[i] - n->model.contact[i]) / way;
         }
-        curvature += vector_product(n->size, n->search, lost);
+        curvature += vector_product(n->size, n->cg.search, lost);
     }
     if (curvature > 0.0) {
-        newton_keep_direction(n, n->search, lost, curvature);
+        newton_keep_direction(n, n->cg.search, lost, curvature);
     }
     return way;
 }
@@ -243,12 +244,12 @@ static double lower(struct newton *n, double down, double most)
 /* Lower the model along the last increment's step. */
 static void continue_last(struct newton *n, double most)
 {
-    memcpy(n->search, n->last, (size_t)n->size * sizeof *n->search);
-    constraint_project(&n->preconditioner.constraint, NULL, n->search);
-    double down = vector_product(n->size, n->search, n->model.smooth) +
-                  vector_product(n->size, n->search, n->model.contact);
+    memcpy(n->cg.search, n->load.move, (size_t)n->size * sizeof *n->cg.search);
+    constraint_project(&n->preconditioner.constraint, NULL, n->cg.search);
+    double down = vector_product(n->size, n->cg.search, n->model.smooth) +
+                  vector_product(n->size, n->cg.search, n->model.contact);
     if (down > 0.0) {
-        multiply(n, n->search, n->product);
+        multiply(n, n->cg.search, n->cg.product);
         (void)lower(n, down, most);
     }
 }
@@ -256,17 +257,17 @@ static void continue_last(struct newton *n, double most)
 bool newton_solve_model(struct newton *n, double of_last, double share, double radius)
 {
     double now = 0.0, mark = 0.0;
-    int augmentations = n->corrections < MOST_AUGMENTATIONS || n->gives_way ? MOST_INNER : 0;
+    int augmentations = n->load.corrections < MOST_AUGMENTATIONS || n->verdict.gives_way ? MOST_INNER : 0;
     struct lanczos lanczos = {0};
     begin_model(n);
     if (of_last > 0.0) {
         continue_last(n, of_last);
     }
-    double length = newton_longest(n, n->step, NULL);
-    double none = n->report->move <= n->round_off ? n->round_off : DBL_EPSILON * n->body_size;
+    double length = newton_longest(n, n->step.move, NULL);
+    double none = n->report->move <= n->scale.round_off ? n->scale.round_off : DBL_EPSILON * n->scale.body;
     for (int k = 0; k < MOST_ITERATIONS; k++) {
         now = scale_gradient(n);
-        n->square = k == 0 ? now : n->square;
+        n->step.square = k == 0 ? now : n->step.square;
         mark = k == 0 ? now : mark;
         if (n->system->contact_count > 0 && now < inner_left * inner_left * mark && augmentations > 0) {
             augmentations--;
@@ -276,21 +277,21 @@ bool newton_solve_model(struct newton *n, double of_last, double share, double r
             touch(n, 0.0);
             now = mark = scale_gradient(n);
         }
-        bool round_off = newton_longest(n, n->scaled, NULL) <= none;
-        if (!(now > share * share * n->square) || round_off) {
-            note_products(n, k, now / n->square, &lanczos);
+        bool round_off = newton_longest(n, n->cg.scaled, NULL) <= none;
+        if (!(now > share * share * n->step.square) || round_off) {
+            note_products(n, k, now / n->step.square, &lanczos);
             return true;
         }
         double down = turn_search(n);
-        double most = (radius - length) / newton_longest(n, n->search, NULL);
+        double most = (radius - length) / newton_longest(n, n->cg.search, NULL);
         double way = lower(n, down, most);
         if (way >= most) {
-            n->falls |= vector_product(n->size, n->search, n->product) < 0.0;
+            n->near.falls |= vector_product(n->size, n->cg.search, n->cg.product) < 0.0;
             return false;
         }
         add_step(&lanczos, way, fmax(0.0, n->directions.part));
-        length = newton_longest(n, n->step, NULL);
+        length = newton_longest(n, n->step.move, NULL);
     }
-    note_products(n, MOST_ITERATIONS, now / n->square, &lanczos);
-    return !newton_held_by_friction(n) || n->settled;
+    note_products(n, MOST_ITERATIONS, now / n->step.square, &lanczos);
+    return !newton_held_by_friction(n) || n->friction.settled;
 }

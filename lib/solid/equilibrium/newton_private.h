@@ -29,63 +29,102 @@ struct newton_directions {
     double part; /* of the last one in the search direction that was made conjugate to them */
 };
 
+/* The load, a share of the whole. */
+struct newton_load {
+    double now;            /* that at u; */
+    double next, most;     /* the next increment, and the largest; */
+    double hold;           /* where the next equilibrium is reported */
+    double last, *move;    /* the last increment, and its change of u; 0: none yet */
+    double *factor_change; /* of the load curves */
+    bool waits;            /* until u is almost in equilibrium */
+    int64_t corrections;   /* since the last increment */
+    int64_t frames;        /* equilibria reported so far */
+};
+
+/* The step that is tried. */
+struct newton_step {
+    double *move;   /* the minimum of the model, from u */
+    double length;  /* of the node that moves most, m; INFINITY: it was cut short */
+    double radius;  /* bound of a step at each node, m */
+    double square;  /* r . M^-1 r at its start */
+    bool collapses; /* a cell, in the step that was tried last */
+};
+
+/* Steps in a row that have not lowered the energy. */
+struct newton_watch {
+    int64_t steps;         /* their number, */
+    double *start, length; /* where they began, and the length of the first, m, */
+    double above;          /* and by how much the energy is higher, J (2D: J/m) */
+};
+
+/* What making the preconditioner anew would save. */
+struct newton_rate {
+    double usual;  /* products by which the residual falls to 1/e, the fewest since it was made, */
+    double excess; /* the products that were more than these, since then, */
+    int64_t cost;  /* and one more than the evaluations that making it took */
+};
+
+struct newton_friction {
+    bool slides;  /* a contact has friction: every increment of the load ends in an equilibrium, */
+    bool rests;   /* at which u is, of the increment before the next one */
+    bool sticks;  /* no point that presses slips, until that is in equilibrium, */
+    bool settled; /* at which u is, with the pressures there */
+};
+
+struct newton_progress {
+    double error, load;  /* the least since the load has grown, to that, */
+    double *u;           /* and u then; */
+    int64_t step, moves; /* the step then: the error has not halved since, or not for as many in a row */
+    double largest_move; /* so far, of a node, m */
+};
+
+/* The state of the least error at this load, where that is near equilibrium. */
+struct newton_near {
+    double *u, error; /* INFINITY: none was */
+    bool falls;       /* since then a model has had no minimum: the stiffness is negative somewhere */
+};
+
+/* Lengths, m. */
+struct newton_scale {
+    double spacing, body; /* mean spacing of the nodes; diagonal of their box */
+    double longest_step;  /* of a node */
+    double round_off;     /* see statics_round_off */
+};
+
+/* What is known of u. */
+struct newton_verdict {
+    double lowest;         /* least eigenvalue of M^-1 K, from above; INFINITY: not known at this load */
+    bool judged;           /* the stability, of a state near u */
+    bool gives_way;        /* what the contacts lack is more than an equilibrium may have */
+    double pressures_lack; /* share of the nodal pressures that the multipliers lack, see body_augment;
+                            INFINITY: not known at this load */
+};
+
 struct newton {
     struct solid_system *system;
     const struct statics_options *options;
     struct statics_report *report;
     struct preconditioner preconditioner;
     int64_t size;
-    double *u, *row_force;     /* the caller's; row_force may be NULL */
-    struct newton_forces at_u; /* residual at u */
-    double *trial;             /* parameters that are tried, */
-    struct newton_forces at_trial;
-    double *step;                      /* the minimum of the model, from u; */
-    struct newton_forces model;        /* and minus the gradient of the model there */
-    double *search, *product, *scaled; /* of the conjugate gradients */
+    double *u, *row_force;         /* the caller's; row_force may be NULL */
+    struct newton_forces at_u;     /* residual at u, */
+    struct newton_forces at_trial; /* and at parameters that are tried: */
+    double *trial;
+    struct newton_forces model; /* minus the gradient of the model at u + step */
+    struct {
+        double *search, *product, *scaled;
+    } cg; /* of the conjugate gradients */
     struct newton_directions directions;
-    double *last;              /* the last increment's change of u, */
-    double last_change;        /* and of the load; 0: none yet */
-    double *factor_change;     /* of the load curves */
-    double spacing, body_size; /* mean spacing of the nodes; diagonal of their box, m */
-    double round_off;          /* see statics_round_off */
-    double load, load_change;  /* share of the load at u; the next increment, */
-    double most_change;        /* and its most */
-    bool waits;                /* the load, until u is almost in equilibrium */
-    bool collapses;            /* a cell did in the step that was tried last */
-    double longest_step;       /* of a node, m */
-    double radius;             /* bound of a step at each node, m */
-    double *kept; /* where the energy was lowest, the start of steps in a row that have not lowered it, */
-    double kept_length; /* the length of the first of them, m, */
-    int64_t uphill;     /* their number, */
-    double above;       /* and by how much the energy is higher, J (2D: J/m) */
-    double usual;   /* products by which the residual falls to 1/e, the fewest since the preconditioner was
-                       made, */
-    double excess;  /* the products that were more than these, since then, */
-    int64_t cost;   /* and one more than the evaluations that making it took */
-    double square;  /* r . M^-1 r at the start of the last correction */
-    double lowest;  /* least eigenvalue of M^-1 K, from above; INFINITY: not known at this load */
-    bool slackens;  /* a material's fibres may */
-    bool slides;    /* a contact has friction: every increment of the load ends in an equilibrium */
-    bool rests;     /* at which u is, of the increment before the next one */
-    bool sticks;    /* no point that presses slips, until that is in equilibrium, */
-    bool settled;   /* at which u is, with the pressures there */
-    bool gives_way; /* what the contacts lack at u is more than an equilibrium may have */
-    bool judged;    /* that, and the stability, are of a state near u */
-    double length;  /* of that step at the node that moved most, m; INFINITY: it was cut short */
-    double pressures_lack; /* share of the nodal pressures that the multipliers lack, see body_augment;
-                            INFINITY: not known at this load */
-    double largest_move;   /* so far, of a node, m */
-    double best_error;     /* since the load has grown, */
-    double best_load;      /* to that, */
-    double *marked;        /* u then, */
-    int64_t best_step;     /* and when; the error has not halved since, */
-    int64_t moves;         /* or not for as many such states in a row */
-    double *nearest;       /* u of the least error at this load, */
-    double nearest_error;  /* which it is; INFINITY: not near equilibrium */
-    bool falls;            /* since then a model has had no minimum: the stiffness is negative somewhere */
-    int64_t corrections;   /* at this load */
-    int64_t frames;        /* equilibria reported so far */
-    double hold;           /* load of the next one */
+    struct newton_load load;
+    struct newton_step step;
+    struct newton_watch watch;
+    struct newton_rate rate;
+    bool slackens; /* a material's fibres may */
+    struct newton_friction friction;
+    struct newton_progress progress;
+    struct newton_near near;
+    struct newton_scale scale;
+    struct newton_verdict verdict;
     enum status failure;
 };
 
@@ -108,10 +147,10 @@ void newton_forget_directions(struct newton *n);
 int newton_directions_kept(const struct newton_directions *directions);
 int newton_direction(const struct newton_directions *directions, int before);
 
-/* Make n->search conjugate to the directions kept, and n->product, K times it, that of the result. */
+/* Make n->cg.search conjugate to the directions kept, and n->cg.product, K times it, that of the result. */
 void newton_conjugate(struct newton *n);
 
-/* Keep a direction, K times which is n->product, and what the forces of contacts lost along it, by the way
+/* Keep a direction, K times which is n->cg.product, and what the forces of contacts lost along it, by the way
  * (NULL: not wanted). */
 void newton_keep_direction(struct newton *n, const double *move, const double *lost, double curvature);
 
@@ -128,16 +167,16 @@ double newton_difference(const struct newton *n, const double *move);
 struct deformation newton_evaluate(struct newton *n, const double *u, struct newton_forces *forces);
 void newton_touch(struct newton *n, const double *u, struct newton_forces *forces);
 
-/* Lower the model at u, from n->step, along the last increment, by `of_last` times it at most, and then until
- * the norm of its gradient is below `share` of what it was. False where the step reaches the radius at a node
- * before, or where a body that friction alone holds has not come to rest, as the pressures have not settled.
- * n->square: that norm, squared. */
+/* Lower the model at u, from n->step.move, along the last increment, by `of_last` times it at most, and then
+ * until the norm of its gradient is below `share` of what it was. False where the step reaches the radius at
+ * a node before, or where a body that friction alone holds has not come to rest, as the pressures have not
+ * settled. n->step.square: that norm, squared. */
 bool newton_solve_model(struct newton *n, double of_last, double share, double radius);
 
 /* search . K search at u, with the stiffness of all but the contacts. */
 double newton_curvature(struct newton *n);
 
-/* r . M^-1 r of a residual r, without reactions; M^-1 r is left in n->scaled. */
+/* r . M^-1 r of a residual r, without reactions; M^-1 r is left in n->cg.scaled. */
 double newton_square(struct newton *n, const struct newton_forces *forces);
 
 /* Length of the longest of the nodes' vectors, and its node. */
@@ -145,7 +184,7 @@ double newton_longest(const struct newton *n, const double *x, int64_t *node);
 
 /* ---- newton_steps.c ---- */
 
-/* Set the load; n->factor_change becomes the change of the load curves from those at load `from`. */
+/* Set the load; n->load.factor_change becomes the change of the load curves from those at load `from`. */
 void newton_set_load(struct newton *n, double from, double load);
 
 /* Increase the load and find the step of the model there. False where that has no minimum. */
@@ -185,12 +224,13 @@ bool newton_ends(struct newton *n, bool stuck, enum statics_outcome *outcome, st
 
 /* ---- newton_stability.c ---- */
 
-/* The least eigenvalue of M^-1 K at u, into n->lowest, and whether u is stable, into system->stability:
- * conjugate gradients on a pseudo-random residual meet a direction of negative stiffness, if there is one.
- * Until they have, they reduce the residual along it by nothing: their polynomial is 1 at 0, its roots are
- * positive. So there is none once the residual's square, r . M^-1 r, is less than the share of one mode. Of a
- * K that is not symmetric, such a direction says nothing: the eigenvalues in the space that was searched,
- * once the residual is that small, say whether one has a negative real part. STATUS_SYSTEM: memory. */
+/* The least eigenvalue of M^-1 K at u, into n->verdict.lowest, and whether u is stable, into
+ * system->stability: conjugate gradients on a pseudo-random residual meet a direction of negative stiffness,
+ * if there is one. Until they have, they reduce the residual along it by nothing: their polynomial is 1 at 0,
+ * its roots are positive. So there is none once the residual's square, r . M^-1 r, is less than the share of
+ * one mode. Of a K that is not symmetric, such a direction says nothing: the eigenvalues in the space that
+ * was searched, once the residual is that small, say whether one has a negative real part. STATUS_SYSTEM:
+ * memory. */
 MUST_CHECK enum status newton_judge_stability(struct newton *n, struct error *error);
 
 /* Note in system->stability where the body leaves a state near equilibrium, at the same load, by more than

@@ -37,8 +37,8 @@ static bool is_negative(struct newton *n, double *move)
 {
     double curvature[2];
     for (int way = 0; way < 2; way++) {
-        multiply(n, move, n->product);
-        curvature[way] = vector_product(n->size, move, n->product);
+        multiply(n, move, n->cg.product);
+        curvature[way] = vector_product(n->size, move, n->cg.product);
         for (int64_t i = 0; i < n->size; i++) {
             move[i] = -move[i];
         }
@@ -66,12 +66,12 @@ static double orthogonalise(struct newton *n, int k, gsl_matrix *H)
     struct newton_directions *basis = &n->directions;
     for (int before = 0; before < newton_directions_kept(basis); before++) {
         int i = newton_direction(basis, before);
-        double part = vector_product(n->size, basis->move[i], n->product);
+        double part = vector_product(n->size, basis->move[i], n->cg.product);
         gsl_matrix_set(H, (size_t)(k - before), (size_t)k, part);
-        add_scaled((int)n->size, -part, basis->product[i], n->product);
-        add_scaled((int)n->size, -part, basis->move[i], n->scaled);
+        add_scaled((int)n->size, -part, basis->product[i], n->cg.product);
+        add_scaled((int)n->size, -part, basis->move[i], n->cg.scaled);
     }
-    return sqrt(fmax(0.0, vector_product(n->size, n->scaled, n->product)));
+    return sqrt(fmax(0.0, vector_product(n->size, n->cg.scaled, n->cg.product)));
 }
 
 /* The pivot of the k-th column of H = L U. */
@@ -90,7 +90,7 @@ static void note_direction(struct newton *n, double quotient, struct space *spac
 {
     space->largest = fmax(space->largest, quotient);
     if (quotient < fmin(0.0, space->least)) {
-        memcpy(space->where, n->search, (size_t)n->size * sizeof *n->search);
+        memcpy(space->where, n->cg.search, (size_t)n->size * sizeof *n->cg.search);
     }
     space->least = fmin(space->least, quotient);
 }
@@ -103,20 +103,20 @@ static enum status extend(struct newton *n, double length, const struct space *s
         RETURN_IF_ERROR(newton_keep_directions(n, space->count + 1, error));
     }
     for (int64_t i = 0; i < n->size; i++) {
-        n->scaled[i] /= length;
-        n->product[i] /= length;
+        n->cg.scaled[i] /= length;
+        n->cg.product[i] /= length;
     }
-    newton_keep_direction(n, n->scaled, NULL, 1.0);
+    newton_keep_direction(n, n->cg.scaled, NULL, 1.0);
     return STATUS_OK;
 }
 
 /* Whether the conditions leave nothing of a load: they hold the whole body. */
 static bool is_held(struct newton *n, const double *load)
 {
-    memcpy(n->search, load, (size_t)n->size * sizeof *load);
-    constraint_project(&n->preconditioner.constraint, NULL, n->search);
-    constraint_project(&n->preconditioner.constraint, NULL, n->search);
-    return sqrt(vector_product(n->size, n->search, n->search)) <=
+    memcpy(n->cg.search, load, (size_t)n->size * sizeof *load);
+    constraint_project(&n->preconditioner.constraint, NULL, n->cg.search);
+    constraint_project(&n->preconditioner.constraint, NULL, n->cg.search);
+    return sqrt(vector_product(n->size, n->cg.search, n->cg.search)) <=
            COARSE_ROUND_OFF * sqrt(vector_product(n->size, load, load));
 }
 
@@ -126,19 +126,20 @@ static enum status search(struct newton *n, struct space *space, struct error *e
     double rest2 = 1.0, pivot = 1.0, norm2 = 0.0;
     bool negative = false;
     newton_forget_directions(n);
-    frequency_start(n->product, n->size);
-    preconditioner_apply(&n->preconditioner, n->product, n->scaled);
-    double length = is_held(n, n->product) ? 0.0 : sqrt(vector_product(n->size, n->scaled, n->product));
-    memset(n->search, 0, (size_t)n->size * sizeof *n->search);
+    frequency_start(n->cg.product, n->size);
+    preconditioner_apply(&n->preconditioner, n->cg.product, n->cg.scaled);
+    double length =
+        is_held(n, n->cg.product) ? 0.0 : sqrt(vector_product(n->size, n->cg.scaled, n->cg.product));
+    memset(n->cg.search, 0, (size_t)n->size * sizeof *n->cg.search);
     for (int k = 0; length > 0.0 && !space->searched && !negative && k < NEWTON_MOST_ITERATIONS; k++) {
         RETURN_IF_ERROR(extend(n, length, space, error));
         double above = k > 0 ? length / pivot : 0.0;
         for (int64_t i = 0; i < n->size; i++) { /* conjugate to the last one, if K is symmetric */
-            n->search[i] = n->scaled[i] - above * n->search[i];
+            n->cg.search[i] = n->cg.scaled[i] - above * n->cg.search[i];
         }
         norm2 = 1.0 + above * above * norm2;
-        multiply(n, n->scaled, n->product);
-        preconditioner_apply(&n->preconditioner, n->product, n->scaled);
+        multiply(n, n->cg.scaled, n->cg.product);
+        preconditioner_apply(&n->preconditioner, n->cg.product, n->cg.scaled);
         double last = length;
         length = orthogonalise(n, k, space->H);
         pivot = pivot_of(k, space);
@@ -214,8 +215,8 @@ enum status newton_judge_stability(struct newton *n, struct error *error)
     }
     RETURN_IF_ERROR(search(n, &space, error));
     n->directions.most = newton_usual_directions(n);
-    RETURN_IF_ERROR(least_real(&space, &n->lowest, error));
-    double least = space.skew < asymmetric ? space.least : n->lowest;
+    RETURN_IF_ERROR(least_real(&space, &n->verdict.lowest, error));
+    double least = space.skew < asymmetric ? space.least : n->verdict.lowest;
     stability->least = 0.0;
     if (is_unstable(n, &space, least)) {
         (void)newton_longest(n, space.where, &stability->node);
@@ -238,17 +239,17 @@ void newton_note_leaving(struct newton *n)
     if (stability->left || n->system->contact_count > 0) {
         return;
     }
-    if (n->falls && isfinite(n->nearest_error)) {
+    if (n->near.falls && isfinite(n->near.error)) {
         for (int64_t i = 0; i < n->size; i++) {
-            n->scaled[i] = n->u[i] - n->nearest[i];
+            n->cg.scaled[i] = n->u[i] - n->near.u[i];
         }
-        double way = newton_longest(n, n->scaled, &stability->left_node);
-        stability->left = way > far_by_error * n->nearest_error * newton_longest(n, n->nearest, NULL);
-        stability->left_load = stability->left ? statics_load_share(n->system, n->load) : 0.0;
+        double way = newton_longest(n, n->cg.scaled, &stability->left_node);
+        stability->left = way > far_by_error * n->near.error * newton_longest(n, n->near.u, NULL);
+        stability->left_load = stability->left ? statics_load_share(n->system, n->load.now) : 0.0;
     }
-    if (n->corrections == 0 || n->report->error < n->nearest_error) {
-        n->nearest_error = is_near(n) ? n->report->error : INFINITY;
-        n->falls = false;
-        memcpy(n->nearest, n->u, (size_t)n->size * sizeof *n->nearest);
+    if (n->load.corrections == 0 || n->report->error < n->near.error) {
+        n->near.error = is_near(n) ? n->report->error : INFINITY;
+        n->near.falls = false;
+        memcpy(n->near.u, n->u, (size_t)n->size * sizeof *n->near.u);
     }
 }

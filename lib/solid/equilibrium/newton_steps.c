@@ -36,29 +36,29 @@ bool newton_held_by_friction(const struct newton *n)
 static bool try_step(struct newton *n)
 {
     for (int64_t i = 0; i < n->size; i++) {
-        n->trial[i] = n->u[i] + n->step[i];
+        n->trial[i] = n->u[i] + n->step.move[i];
     }
     struct deformation deformation = newton_evaluate(n, n->trial, &n->at_trial);
     n->report->least_jacobian = deformation.least_jacobian;
     n->report->inverted_point = deformation.point;
-    n->collapses = !(deformation.least_jacobian > least_left * n->at_u.least_jacobian);
-    return !n->collapses && newton_square(n, &n->at_trial) <= most_growth * most_growth * n->square;
+    n->step.collapses = !(deformation.least_jacobian > least_left * n->at_u.least_jacobian);
+    return !n->step.collapses && newton_square(n, &n->at_trial) <= most_growth * most_growth * n->step.square;
 }
 
 static void shorten(struct newton *n, double part)
 {
     for (int64_t i = 0; i < n->size; i++) {
-        n->step[i] *= part;
+        n->step.move[i] *= part;
     }
-    n->length *= part;
+    n->step.length *= part;
 }
 
 /* The share of the step that is taken at most. */
 static double most_share(const struct newton *n)
 {
-    double share = fmin(1.0, n->longest_step / n->length);
+    double share = fmin(1.0, n->scale.longest_step / n->step.length);
     for (int64_t c = 0; c < n->system->contact_count; c++) {
-        share = fmin(share, step_by_width / contact_passes(&n->system->contacts[c], n->step));
+        share = fmin(share, step_by_width / contact_passes(&n->system->contacts[c], n->step.move));
     }
     return share;
 }
@@ -76,15 +76,15 @@ static void take_step(struct newton *n)
 
 void newton_set_load(struct newton *n, double from, double load)
 {
-    statics_change_load(n->system, from, load, n->factor_change);
-    n->load = load;
+    statics_change_load(n->system, from, load, n->load.factor_change);
+    n->load.now = load;
 }
 
 /* Let the step follow the conditions. Of nearly dependent rows one pass leaves 1e-6 of what it takes. */
 static void meet_conditions(struct newton *n)
 {
-    constraint_project(&n->preconditioner.constraint, n->factor_change, n->step);
-    constraint_project(&n->preconditioner.constraint, n->factor_change, n->step);
+    constraint_project(&n->preconditioner.constraint, n->load.factor_change, n->step.move);
+    constraint_project(&n->preconditioner.constraint, n->load.factor_change, n->step.move);
 }
 
 /* Take the forces of contacts at u with the multipliers as they are now, which may have advanced with the
@@ -93,25 +93,25 @@ static void take_multipliers(struct newton *n)
 {
     if (n->system->contact_count > 0) {
         newton_touch(n, n->u, &n->at_u);
-        n->square = fmax(n->square, newton_square(n, &n->at_u));
+        n->step.square = fmax(n->step.square, newton_square(n, &n->at_u));
     }
 }
 
 bool newton_begin_increment(struct newton *n, double from, double change)
 {
-    double target = n->hold;
+    double target = n->load.hold;
     newton_set_load(n, from, from + change > target * (1.0 - 1e-12) ? target : from + change);
-    memset(n->step, 0, (size_t)n->size * sizeof *n->step);
+    memset(n->step.move, 0, (size_t)n->size * sizeof *n->step.move);
     meet_conditions(n);
     system_predict_friction(n->system, newton_held_by_friction(n));
     (void)newton_evaluate(n, n->u, &n->at_u);
-    if (n->slides) {
+    if (n->friction.slides) {
         preconditioner_follow(&n->preconditioner, n->system);
     }
-    bool continues = n->last_change != 0.0;
-    bool whole = newton_solve_model(n, continues ? change / n->last_change : 0.0,
-                                    continues ? left : left_at_first, far * n->body_size);
-    n->length = newton_longest(n, n->step, NULL);
+    bool continues = n->load.last != 0.0;
+    bool whole = newton_solve_model(n, continues ? change / n->load.last : 0.0,
+                                    continues ? left : left_at_first, far * n->scale.body);
+    n->step.length = newton_longest(n, n->step.move, NULL);
     take_multipliers(n);
     return whole;
 }
@@ -120,7 +120,7 @@ bool newton_begin_increment(struct newton *n, double from, double change)
  * grows. */
 static bool lacks_less(const struct newton *n)
 {
-    return !n->collapses && newton_longest(n, n->scaled, NULL) <= n->length;
+    return !n->step.collapses && newton_longest(n, n->cg.scaled, NULL) <= n->step.length;
 }
 
 bool newton_take_increment(struct newton *n, double from, double change)
@@ -136,21 +136,21 @@ bool newton_take_increment(struct newton *n, double from, double change)
         if (try_step(n) || lacks_less(n)) {
             break;
         }
-        if (n->length < least_radius * n->spacing) {
+        if (n->step.length < least_radius * n->scale.spacing) {
             newton_set_load(n, from, from);
             return false;
         }
     }
-    n->length = part < 1.0 ? INFINITY : n->length;
-    n->last_change = n->load - from;
-    memcpy(n->last, n->step, (size_t)n->size * sizeof *n->last);
+    n->step.length = part < 1.0 ? INFINITY : n->step.length;
+    n->load.last = n->load.now - from;
+    memcpy(n->load.move, n->step.move, (size_t)n->size * sizeof *n->load.move);
     take_step(n);
-    n->load_change = fmin(n->most_change, fmax(2.0 * n->last_change, shorter * change));
+    n->load.next = fmin(n->load.most, fmax(2.0 * n->load.last, shorter * change));
     n->report->loading_steps++;
-    n->corrections = n->uphill = 0;
-    n->above = 0.0;
-    n->pressures_lack = INFINITY;
-    n->judged = n->rests = n->settled = false;
+    n->load.corrections = n->watch.steps = 0;
+    n->watch.above = 0.0;
+    n->verdict.pressures_lack = INFINITY;
+    n->verdict.judged = n->friction.rests = n->friction.settled = false;
     return true;
 }
 
@@ -160,16 +160,16 @@ bool newton_take_increment(struct newton *n, double from, double change)
 static double rise(struct newton *n)
 {
     double contact = n->at_trial.contact_energy - n->at_u.contact_energy;
-    double first = vector_product(n->size, n->step, n->at_u.smooth);
-    double last = vector_product(n->size, n->step, n->at_trial.smooth);
-    if (n->uphill == 0 && 0.5 * (first + last) > contact) {
+    double first = vector_product(n->size, n->step.move, n->at_u.smooth);
+    double last = vector_product(n->size, n->step.move, n->at_trial.smooth);
+    if (n->watch.steps == 0 && 0.5 * (first + last) > contact) {
         return contact - 0.5 * (first + last);
     }
     for (int64_t i = 0; i < n->size; i++) {
-        n->search[i] = 0.5 * (n->u[i] + n->trial[i]);
+        n->cg.search[i] = 0.5 * (n->u[i] + n->trial[i]);
     }
-    (void)system_smooth_residual(n->system, n->search, n->product);
-    double middle = vector_product(n->size, n->step, n->product);
+    (void)system_smooth_residual(n->system, n->cg.search, n->cg.product);
+    double middle = vector_product(n->size, n->step.move, n->cg.product);
     (void)newton_evaluate(n, n->trial, &n->at_trial);
     n->report->force_evaluations++;
     return contact - (first + 4.0 * middle + last) / 6.0;
@@ -178,11 +178,11 @@ static double rise(struct newton *n)
 /* Return to where the energy was lowest. */
 static void go_back(struct newton *n)
 {
-    memcpy(n->u, n->kept, (size_t)n->size * sizeof *n->u);
-    n->uphill = 0;
-    n->above = 0.0;
-    n->length = INFINITY;
-    n->radius = shorter * n->kept_length;
+    memcpy(n->u, n->watch.start, (size_t)n->size * sizeof *n->u);
+    n->watch.steps = 0;
+    n->watch.above = 0.0;
+    n->step.length = INFINITY;
+    n->step.radius = shorter * n->watch.length;
     (void)newton_evaluate(n, n->u, &n->at_u);
     system_accept(n->system);
 }
@@ -190,7 +190,7 @@ static void go_back(struct newton *n)
 /* Let no point that presses slip, or let them slip again, from u on. */
 static void hold(struct newton *n, bool sticks)
 {
-    n->sticks = sticks;
+    n->friction.sticks = sticks;
     newton_touch(n, n->u, &n->at_u);
     system_hold_friction(n->system, sticks);
     newton_touch(n, n->u, &n->at_u);
@@ -200,7 +200,7 @@ static void hold(struct newton *n, bool sticks)
 void newton_let_slip(struct newton *n)
 {
     hold(n, false);
-    n->settled = true;
+    n->friction.settled = true;
 }
 
 /* What a correction leaves of the residual's norm: as much as the model's own error, which is about the
@@ -208,9 +208,10 @@ void newton_let_slip(struct newton *n)
  * between steps, or yields of friction. */
 static double left_of_correction(const struct newton *n)
 {
-    double error = n->report->error, most = fmax(n->options->tolerance, n->round_off / n->report->move);
+    double error = n->report->error, most = fmax(n->options->tolerance, n->scale.round_off / n->report->move);
     double enough = fmax(error, 0.5 * most / error);
-    return error > 0.0 && !n->slides && !body_is_limited(&n->system->body) ? fmin(left, enough) : left;
+    return error > 0.0 && !n->friction.slides && !body_is_limited(&n->system->body) ? fmin(left, enough)
+                                                                                    : left;
 }
 
 /* The step of the model from u. Where that has no minimum, as friction does not hold the body, the pressures
@@ -218,71 +219,73 @@ static double left_of_correction(const struct newton *n)
  * have settled. */
 static bool solve(struct newton *n)
 {
-    memset(n->step, 0, (size_t)n->size * sizeof *n->step);
-    bool whole = newton_solve_model(n, 0.0, n->settled ? left_at_first : left_of_correction(n), n->radius);
-    n->settled = false;
-    if (whole || n->sticks || !newton_held_by_friction(n)) {
+    memset(n->step.move, 0, (size_t)n->size * sizeof *n->step.move);
+    bool whole = newton_solve_model(n, 0.0, n->friction.settled ? left_at_first : left_of_correction(n),
+                                    n->step.radius);
+    n->friction.settled = false;
+    if (whole || n->friction.sticks || !newton_held_by_friction(n)) {
         return whole;
     }
     hold(n, true);
-    memset(n->step, 0, (size_t)n->size * sizeof *n->step);
-    return newton_solve_model(n, 0.0, left, n->radius);
+    memset(n->step.move, 0, (size_t)n->size * sizeof *n->step.move);
+    return newton_solve_model(n, 0.0, left, n->step.radius);
 }
 
 /* After what was tried: the forces at u, and yields of friction by the pressures there. */
 static void stay(struct newton *n)
 {
     (void)newton_evaluate(n, n->u, &n->at_u);
-    if (n->slides) {
+    if (n->friction.slides) {
         system_accept(n->system);
     }
 }
 
 bool newton_correct(struct newton *n)
 {
-    double lowest = n->lowest;
-    if (n->slides) {
+    double lowest = n->verdict.lowest;
+    if (n->friction.slides) {
         system_relax_friction(n->system);
         newton_touch(n, n->u, &n->at_u);
     }
     bool whole = solve(n);
-    n->length = newton_longest(n, n->step, &n->report->worst_node);
-    if (n->length == 0.0) {
+    n->step.length = newton_longest(n, n->step.move, &n->report->worst_node);
+    if (n->step.length == 0.0) {
         stay(n);
         return true;
     }
     take_multipliers(n);
     double share = most_share(n),
-           least = fmin(least_radius * n->spacing, n->options->tolerance * n->report->move);
+           least = fmin(least_radius * n->scale.spacing, n->options->tolerance * n->report->move);
     if (share < 1.0) {
         shorten(n, share);
         whole = false;
-        n->radius = n->length;
+        n->step.radius = n->step.length;
     }
     while (!try_step(n)) {
-        if (!(n->length > least)) {
-            n->lowest = lowest; /* that of a step that goes nowhere is one of round-off */
+        if (!(n->step.length > least)) {
+            n->verdict.lowest = lowest; /* that of a step that goes nowhere is one of round-off */
             stay(n);
             return n->report->error <= n->options->tolerance; /* u needs no step, but perhaps pressures */
         }
         shorten(n, 0.5);
         whole = false;
-        n->radius = 0.5 * n->length;
+        n->step.radius = 0.5 * n->step.length;
     }
-    if (n->uphill == 0) {
-        memcpy(n->kept, n->u, (size_t)n->size * sizeof *n->u);
-        n->kept_length = n->length;
+    if (n->watch.steps == 0) {
+        memcpy(n->watch.start, n->u, (size_t)n->size * sizeof *n->u);
+        n->watch.length = n->step.length;
     }
-    n->above = n->length > least ? fmax(0.0, n->above + rise(n)) : 0.0; /* else it is round-off */
-    n->uphill = n->above > 0.0 ? n->uphill + 1 : 0;
-    if (n->uphill > most_uphill && n->kept_length > least) {
+    n->watch.above =
+        n->step.length > least ? fmax(0.0, n->watch.above + rise(n)) : 0.0; /* else it is round-off */
+    n->watch.steps = n->watch.above > 0.0 ? n->watch.steps + 1 : 0;
+    if (n->watch.steps > most_uphill && n->watch.length > least) {
         go_back(n);
         return true;
     }
     take_step(n);
-    n->judged = n->judged && n->length < same_state * n->report->move;
-    n->radius = fmax(fmin(2.0 * n->radius, n->longest_step), least_radius * n->spacing);
-    n->length = whole && n->uphill == 0 ? n->length : INFINITY;
+    n->verdict.judged = n->verdict.judged && n->step.length < same_state * n->report->move;
+    n->step.radius = fmax(fmin(2.0 * n->step.radius, n->scale.longest_step), least_radius * n->scale.spacing);
+    n->step.length = whole && n->watch.steps == 0 ? n->step.length : INFINITY;
     return true;
 }
 
@@ -292,10 +295,10 @@ bool newton_leave(struct newton *n)
     if (!(newton_curvature(n) < 0.0)) {
         return true;
     }
-    memcpy(n->step, n->search, (size_t)n->size * sizeof *n->step);
-    n->length = newton_longest(n, n->step, NULL);
-    shorten(n, leaving * n->spacing / n->length);
-    n->square = INFINITY;
+    memcpy(n->step.move, n->cg.search, (size_t)n->size * sizeof *n->step.move);
+    n->step.length = newton_longest(n, n->step.move, NULL);
+    shorten(n, leaving * n->scale.spacing / n->step.length);
+    n->step.square = INFINITY;
     bool good = try_step(n);
     if (!good) {
         return false;
@@ -310,7 +313,7 @@ bool newton_leave(struct newton *n)
         (void)try_step(n);
     }
     take_step(n);
-    n->length = INFINITY;
-    n->judged = false;
+    n->step.length = INFINITY;
+    n->verdict.judged = false;
     return true;
 }
