@@ -83,8 +83,8 @@ static enum status add_around(const struct solid_system *system, int64_t i, int6
     return STATUS_OK;
 }
 
-/* The list of the row of place p, by distance: of the nodes around it, and where these are few of those
- * around them. */
+/* The list of the row of place p, by distance: of the nodes around it and, in the plane, where supports are
+ * narrow, of those around them. */
 static enum status choose(const struct solid_system *system, int64_t p, struct near *near, int32_t *list,
                           int64_t *length, struct error *error)
 {
@@ -92,7 +92,7 @@ static enum status choose(const struct solid_system *system, int64_t p, struct n
     int64_t i = system->body.node_order[p], kept = 0;
     near->count = 0;
     RETURN_IF_ERROR(add_around(system, i, i, near, error));
-    bool few = near->count < MOST_ENTRIES - 1;
+    bool few = system->dim == 2 && near->count < MOST_ENTRIES - 1;
     for (int64_t k = around->ptr[i]; few && k < around->ptr[i + 1]; k++) {
         RETURN_IF_ERROR(add_around(system, i, around->idx[k], near, error));
     }
