@@ -2,8 +2,7 @@
 
 load common.bash
 
-# cells LABEL: ml of its cells, of the report in `said`
-cells() { sed -nE "s/^voxels: $1: .* ml of voxels, ([0-9.e+-]+) ml of cells.*/\1/p" said; }
+cells() { sed -nE "s/^voxels: $1: .* ml of voxels, ([0-9.e+-]+) ml of cells.*/\1/p" said; } # LABEL: ml, of the report in `said`
 
 @test "bodies and specks that are left out, and cavities that are filled, move no surface" {
     /usr/bin/python3 - << 'END'
@@ -22,7 +21,8 @@ for name, label in dict(one=one, several=several, specks=specks, holes=holes).it
     nib.save(image, name + ".nii")
 END
     for image in one specks holes several; do
-        voxels -h 4mm -v $([ $image != several ] || echo --largest) -o one.mts $image.nii 2> said
+        [ $image != several ] || set -- --largest
+        voxels -h 4mm -v "$@" -o one.mts $image.nii 2> said
         cells label_1 >> volumes
     done
     grep -qE "^voxels: label_1: [0-9.]+ of [0-9.]+ ml lie in bodies that --largest leaves out$" said
