@@ -29,7 +29,7 @@ from dolfinx import fem  # noqa: E402
 from mpi4py import MPI  # noqa: E402
 from petsc4py import PETSc  # noqa: E402
 
-MOST_ITERATIONS, TOLERANCE, MOST_STEPS = 20, 1e-4, 16
+MOST_ITERATIONS, TOLERANCE, MOST_STEPS, MOST_HALVES = 20, 1e-4, 16, 5
 
 
 def die(message):
@@ -141,6 +141,18 @@ class Solver:
         self.vector.zeroEntries()
         fem.petsc.assemble_vector(self.vector, self.body.residual)
 
+    def go(self):
+        """Take the step, or as much of it as turns no part of the body inside out; False where none is that small."""
+        state, part = self.body.state.vector, 1.0
+        state.axpy(-1.0, self.step)
+        for _ in range(MOST_HALVES):
+            self.unbalanced()
+            if np.isfinite(self.vector.norm()):
+                return True
+            part *= 0.5
+            state.axpy(part, self.step)
+        return False
+
     def solve(self):
         """From the state to equilibrium at the conditions' values; False where it is not found."""
         state, moved = self.body.state.vector, False
@@ -153,19 +165,17 @@ class Solver:
             fem.petsc.set_bc(self.vector, self.held, state, -1.0)
             self.direct.setUp()
             self.direct.solve(self.vector, self.step)
-            state.axpy(-1.0, self.step)
             self.iterations += 1
-            length, whole = self.step.norm(PETSc.NormType.INFINITY), state.norm(PETSc.NormType.INFINITY)
-            if not np.isfinite(length):
+            if not np.isfinite(self.step.norm()) or not self.go():
                 return False
-            moves = self.displacement_step()
-            if moved and moves[0] <= TOLERANCE * moves[1]:
+            step, whole = self.largest_moves()
+            if moved and step <= TOLERANCE * whole:
                 return True
             moved = whole > 0
         return False
 
-    def displacement_step(self):
-        """The largest displacement of the last step, and that of the state."""
+    def largest_moves(self):
+        """The largest displacement in the last step, and that of the state."""
         place = self.body.place
         return np.abs(self.step.array[place]).max(), np.abs(self.body.state.vector.array[place]).max()
 
@@ -180,12 +190,11 @@ def main():
     started = time.process_time()
     collapsed, body.place = body.space.sub(0).collapse()
     values, constants, conditions, dofs = body.conditions(rows)
-    solver = Solver(body, conditions)
     body.prepare += time.process_time() - started
     steps, found = 1, False
     while not found and steps <= MOST_STEPS:
         started = time.process_time()
-        solver.iterations = 0
+        solver = Solver(body, conditions)
         body.state.x.array[:] = 0.0
         found = True
         for step in range(1, steps + 1):
