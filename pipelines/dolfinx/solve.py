@@ -53,18 +53,17 @@ def prescribed(scene, stream, dim):
         if not section.startswith("displacement "):
             continue
         given = scene[section]
-        chosen = np.concatenate([facets[of_facet == names.index(name.strip())] for name in given["facets"].split(",")])
-        if "components" in given:
-            for axis, value in enumerate(given["components"].split(",")):
-                if value.strip() != "free":
-                    rows.append((section.split()[1], chosen, axis, float(value)))
-        elif "normal" in given:
-            spread = np.ptp(x[chosen.ravel()], axis=0)
-            axis = int(spread.argmin())
-            outwards = 1.0 if x[chosen[0, 0], axis] > x[:, axis].mean() else -1.0
-            rows.append((section.split()[1], chosen, axis, outwards * float(given["normal"])))
-        else:
-            die(f"[{section}]: only components, or normal")
+        for group in given["facets"].split(","):
+            chosen = facets[of_facet == names.index(group.strip())]
+            if "components" in given:
+                values = [(axis, value) for axis, value in enumerate(given["components"].split(",")) if value.strip() != "free"]
+            elif "normal" in given:
+                axis = int(np.ptp(x[chosen.ravel()], axis=0).argmin())
+                outwards = 1.0 if x[chosen[0, 0], axis] > x[:, axis].mean() else -1.0
+                values = [(axis, outwards * float(given["normal"]))]
+            else:
+                die(f"[{section}]: only components, or normal")
+            rows += [(section.split()[1], chosen, axis, float(value)) for axis, value in values]
     return rows
 
 

@@ -17,11 +17,12 @@ set logscale xy
 set format "%g"
 set xlabel "processor seconds, one thread"
 set ylabel "mean error, % of the largest displacement"
-set key right top samplen 2
+unset key
 set grid
 set multiplot layout lines, columns
 do for [body in cases] {
     set title body noenhanced
+    if (body eq word(cases, words(cases))) { set key left bottom Left reverse samplen 1 }
     plot for [s in there] data \
         using (strcol(1) eq body && strcol(2) eq s ? $7 : NaN):8 with linespoints pt 7 ps 0.9 lw 2 lc rgb colour(s) title name(s)
 }
