@@ -3,8 +3,8 @@
 
 MESH_STREAM is what `nodes` writes. Understood of a scene: one neo-Hookean material, displacements by components or along the normal of a
 side across an axis. Writes a text stream of nodes.x and u, of all nodes of the elements, and of reactions. Prints on standard error nodes,
-Newton iterations, and processor seconds of one thread: of making mesh and spaces, and of assembly with the direct solver, MUMPS. The forms
-are compiled, once for each dimension: that is not counted. The load comes in one step, or in as few equal ones as Newton's method needs.
+Newton iterations, and processor seconds of one thread: of assembly, of the direct solver, MUMPS, and of these with making mesh and spaces. The
+forms are compiled, once for each dimension: that is not counted. The load comes in one step, or in as few equal ones as Newton's method needs.
 Exit status: 0; 1 no equilibrium; 2 a scene that is not understood.
 """
 
@@ -44,7 +44,7 @@ def read_scene(path):
     return scene
 
 
-def prescribed(scene, stream, dim):
+def prescribed(scene, stream):
     """A list of (name of the section, facets of a group, component, value in m)."""
     names, of_facet = stream["facets.set"].names, np.asarray(stream["facets.set"]).ravel()
     facets, x = np.asarray(stream["facets"]), np.asarray(stream["nodes.x"])
@@ -134,7 +134,7 @@ class Solver:
         self.direct.getPC().setType("lu")
         self.direct.getPC().setFactorSolverType("mumps")
         self.direct.setOperators(self.matrix)
-        self.iterations = 0
+        self.iterations, self.seconds = 0, 0.0
 
     def unbalanced(self):
         self.vector.zeroEntries()
@@ -162,8 +162,10 @@ class Solver:
             self.unbalanced()
             fem.petsc.apply_lifting(self.vector, [self.body.stiffness], [self.held], x0=[state], scale=-1.0)
             fem.petsc.set_bc(self.vector, self.held, state, -1.0)
+            started = time.process_time()
             self.direct.setUp()
             self.direct.solve(self.vector, self.step)
+            self.seconds += time.process_time() - started
             self.iterations += 1
             if not np.isfinite(self.step.norm()) or not self.go():
                 return False
@@ -184,7 +186,7 @@ def main():
         print("usage: solve.py SCENE MESH_STREAM > u.dat", file=sys.stderr)
         sys.exit(2)
     scene, stream = read_scene(sys.argv[1]), mtled.read(sys.argv[2])
-    rows = prescribed(scene, stream, np.asarray(stream["nodes.x"]).shape[1])
+    rows = prescribed(scene, stream)
     body = Body(scene, stream)
     started = time.process_time()
     collapsed, body.place = body.space.sub(0).collapse()
@@ -206,25 +208,23 @@ def main():
         print("solve.py: no equilibrium found", file=sys.stderr)
         sys.exit(1)
     solver.unbalanced()
-    reactions, names = {}, []
+    reactions, dim = {}, body.dim
     for (name, _, axis, _), held in zip(rows, dofs):
-        if name not in reactions:
-            names.append(name)
-        reactions.setdefault(name, np.zeros(body.dim))[axis] += solver.vector.array[held].sum()
-    axes = "x,y,z"[: 2 * body.dim - 1]
-    count = body.dim
-    places = collapsed.tabulate_dof_coordinates()[:, :count]
-    field = body.state.x.array[np.array(body.place)].reshape(-1, count)
+        reactions.setdefault(name, np.zeros(dim))[axis] += solver.vector.array[held].sum()
+    axes = "x,y,z"[: 2 * dim - 1]
+    places = collapsed.tabulate_dof_coordinates()[:, :dim]
+    field = body.state.x.array[np.array(body.place)].reshape(-1, dim)
     mtled.write(
         {
             "nodes.x": mtled.Array(places, unit="m", cols=axes),
-            "reactions": mtled.Array(np.array([reactions[name] for name in names]), unit="N" if count == 3 else "N/m", rows=",".join(names)),
+            "reactions": mtled.Array(np.array(list(reactions.values())), unit="N" if dim == 3 else "N/m", rows=",".join(reactions)),
             "u": mtled.Array(field, unit="m", cols=axes),
         },
         sys.stdout.buffer,
     )
     print(
-        f"nodes\t{len(places)}\niterations\t{solver.iterations}\nprepare seconds\t{body.prepare:.4f}\nsolve seconds\t{seconds:.4f}",
+        f"nodes\t{len(places)}\niterations\t{solver.iterations}\nassembly seconds\t{seconds - solver.seconds:.4f}\n"
+        f"solver seconds\t{solver.seconds:.4f}\nprocessor seconds\t{body.prepare + seconds:.4f}",
         file=sys.stderr,
     )
 

@@ -59,9 +59,7 @@ static void push(struct newton *n, double way, const double *move, double *force
     n->report->force_evaluations++;
 }
 
-/* product = K move, with the stiffness K at u of all but the contacts. Where fibres may slacken, it is the
- * mean of both ways: at a kink of the stress that of one way is no linear function of the move. */
-static void multiply(struct newton *n, const double *move, double *product)
+void newton_multiply(struct newton *n, const double *move, double *product)
 {
     double epsilon = newton_difference(n, move), width = epsilon;
     const double *behind = n->at_u.smooth;
@@ -78,7 +76,7 @@ static void multiply(struct newton *n, const double *move, double *product)
 
 double newton_curvature(struct newton *n)
 {
-    multiply(n, n->cg.search, n->cg.product);
+    newton_multiply(n, n->cg.search, n->cg.product);
     double curvature = vector_product(n->size, n->cg.search, n->cg.product);
     (void)newton_evaluate(n, n->u, &n->at_u);
     return curvature;
@@ -139,7 +137,7 @@ static double turn_search(struct newton *n)
         double down = 0.0;
         bool alone = n->directions.count == 0;
         memcpy(n->cg.search, n->cg.scaled, (size_t)n->size * sizeof *n->cg.search);
-        multiply(n, n->cg.search, n->cg.product);
+        newton_multiply(n, n->cg.search, n->cg.product);
         newton_conjugate(n);
         for (int64_t i = 0; i < n->size; i++) {
             down += n->cg.search[i] * (n->model.smooth[i] + n->model.contact[i]);
@@ -157,7 +155,7 @@ static void begin_model(struct newton *n)
 {
     memcpy(n->model.smooth, n->at_u.smooth, (size_t)n->size * sizeof *n->model.smooth);
     if (newton_longest(n, n->step.move, NULL) > 0.0) {
-        multiply(n, n->step.move, n->cg.product);
+        newton_multiply(n, n->step.move, n->cg.product);
         add_scaled((int)n->size, -1.0, n->cg.product, n->model.smooth);
     }
     constraint_project(&n->preconditioner.constraint, NULL, n->model.smooth);
@@ -249,7 +247,7 @@ static void continue_last(struct newton *n, double most)
     double down = vector_product(n->size, n->cg.search, n->model.smooth) +
                   vector_product(n->size, n->cg.search, n->model.contact);
     if (down > 0.0) {
-        multiply(n, n->cg.search, n->cg.product);
+        newton_multiply(n, n->cg.search, n->cg.product);
         (void)lower(n, down, most);
     }
 }

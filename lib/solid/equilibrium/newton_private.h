@@ -163,6 +163,10 @@ void newton_descend_again(struct newton *n);
 /* By what a move is multiplied for a difference of forces that gives the stiffness along it. */
 double newton_difference(const struct newton *n, const double *move);
 
+/* product = K move, with the stiffness K at u of all but the contacts. Where fibres may slacken, it is the
+ * mean of both ways: at a kink of the stress that of one way is no linear function of the move. */
+void newton_multiply(struct newton *n, const double *move, double *product);
+
 /* The forces at u, and how far from inversion it is; only those of contacts. */
 struct deformation newton_evaluate(struct newton *n, const double *u, struct newton_forces *forces);
 void newton_touch(struct newton *n, const double *u, struct newton_forces *forces);

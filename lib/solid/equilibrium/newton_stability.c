@@ -20,14 +20,16 @@ static const double asymmetric = 0.01;
 static void multiply(struct newton *n, const double *move, double *product)
 {
     double epsilon = newton_difference(n, move);
+    newton_multiply(n, move, product);
+    if (n->system->contact_count == 0) {
+        return;
+    }
     for (int64_t i = 0; i < n->size; i++) {
         n->trial[i] = n->u[i] + epsilon * move[i];
     }
-    (void)newton_evaluate(n, n->trial, &n->at_trial);
+    newton_touch(n, n->trial, &n->at_trial);
     for (int64_t i = 0; i < n->size; i++) {
-        product[i] =
-            (n->at_u.smooth[i] + n->at_u.contact[i] - n->at_trial.smooth[i] - n->at_trial.contact[i]) /
-            epsilon;
+        product[i] += (n->at_u.contact[i] - n->at_trial.contact[i]) / epsilon;
     }
 }
 
@@ -114,8 +116,7 @@ static enum status extend(struct newton *n, double length, const struct space *s
 static bool is_held(struct newton *n, const double *load)
 {
     memcpy(n->cg.search, load, (size_t)n->size * sizeof *load);
-    constraint_project(&n->preconditioner.constraint, NULL, n->cg.search);
-    constraint_project(&n->preconditioner.constraint, NULL, n->cg.search);
+    preconditioner_project(&n->preconditioner, n->cg.search);
     return sqrt(vector_product(n->size, n->cg.search, n->cg.search)) <=
            COARSE_ROUND_OFF * sqrt(vector_product(n->size, load, load));
 }

@@ -70,6 +70,9 @@ MUST_CHECK enum status preconditioner_measure(struct preconditioner *preconditio
  * do, as it may come to rest on any. */
 void preconditioner_follow(struct preconditioner *preconditioner, const struct solid_system *system);
 
+/* x := P x, in two passes: of nearly dependent rows one pass leaves 1e-6 of what it takes. */
+void preconditioner_project(struct preconditioner *preconditioner, double *x);
+
 /* acceleration = M^-1 force. */
 void preconditioner_apply(struct preconditioner *preconditioner, const double *force, double *acceleration);
 

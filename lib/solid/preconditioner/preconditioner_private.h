@@ -3,9 +3,6 @@
 
 #include "solid/preconditioner/preconditioner.h"
 
-/* x := P x, in two passes: of nearly dependent rows one pass leaves 1e-6 of what it takes. */
-void preconditioner_project(struct preconditioner *preconditioner, double *x);
-
 /* The lower triangle of matrix[size * size] += the stiffness along the coarse fields of the contact nodes
  * that A counts in. */
 void preconditioner_add_contacts(struct preconditioner *preconditioner, const struct solid_system *system,
