@@ -12,71 +12,26 @@ ALL_SETS void dense_add_row(int64_t count, double a, const double *x, double *re
     }
 }
 
-/* Rows of L that are computed at a time, and then subtracted from the rest; tiles of the rest. */
-enum { PANEL = 64, TILE_ROWS = 4, TILE_COLUMNS = 8, COLUMNS_AT_ONCE = 128 };
+ALL_SETS double dense_dot(int64_t count, const double *x, const double *y)
+{
+    enum { SUMS = 8 };
+    double sum[SUMS] = {0.0}, rest = 0.0;
+    for (; count >= SUMS; count -= SUMS, x += SUMS, y += SUMS) {
+        for (int k = 0; k < SUMS; k++) {
+            sum[k] += x[k] * y[k];
+        }
+    }
+    for (int64_t i = 0; i < count; i++) {
+        rest += x[i] * y[i];
+    }
+    for (int k = 0; k < SUMS; k++) {
+        rest += sum[k];
+    }
+    return rest;
+}
+
+enum { PANEL = 64 };                 /* columns of L that are computed at a time, and then subtracted */
 enum { ENTRIES_FOR_THREAD = 50000 }; /* see chunks_of */
-
-/* Four numbers, which fit into one register of processors with AVX2. */
-typedef double four __attribute__((vector_size(32), aligned(8), may_alias));
-
-/* rest, TILE_ROWS by TILE_COLUMNS of a matrix of n columns, -= left[TILE_ROWS][count]
- * above[count][TILE_COLUMNS], parts of the same matrix. */
-KERNEL_INLINE void subtract_tile(int64_t n, int64_t count, const double *left, const double *above,
-                                 double *rest)
-{
-    four sum[TILE_ROWS][2];
-    for (int i = 0; i < TILE_ROWS; i++) {
-        sum[i][0] = *(const four *)(rest + i * n);
-        sum[i][1] = *(const four *)(rest + i * n + 4);
-    }
-    for (int64_t k = 0; k < count; k++) {
-        four first = *(const four *)(above + k * n), second = *(const four *)(above + k * n + 4);
-        for (int i = 0; i < TILE_ROWS; i++) {
-            sum[i][0] -= left[i * n + k] * first;
-            sum[i][1] -= left[i * n + k] * second;
-        }
-    }
-    for (int i = 0; i < TILE_ROWS; i++) {
-        *(four *)(rest + i * n) = sum[i][0];
-        *(four *)(rest + i * n + 4) = sum[i][1];
-    }
-}
-
-/* The same of any part. */
-KERNEL_INLINE void subtract_part(int64_t n, int64_t count, int64_t rows, int64_t columns, const double *left,
-                                 const double *above, double *rest)
-{
-    for (int64_t i = 0; i < rows; i++) {
-        for (int64_t k = 0; k < count; k++) {
-            for (int64_t j = 0; j < columns; j++) {
-                rest[i * n + j] -= left[i * n + k] * above[k * n + j];
-            }
-        }
-    }
-}
-
-/* Subtract the columns of L from k on, `count`, from the rows i to i + rows behind them up to the diagonal.
- * Each entry is summed in the order of the columns, as without panels. */
-ALL_SETS static void subtract_panel(int64_t n, int64_t k, int64_t count, int64_t begin, int64_t end,
-                                    double *matrix)
-{
-    for (int64_t from = k + count; from < end; from += COLUMNS_AT_ONCE) {
-        for (int64_t i = begin; i < end; i += TILE_ROWS) {
-            int64_t rows = end - i < TILE_ROWS ? end - i : TILE_ROWS;
-            int64_t last = i + rows < from + COLUMNS_AT_ONCE ? i + rows : from + COLUMNS_AT_ONCE;
-            for (int64_t j = from; j < last; j += TILE_COLUMNS) {
-                const double *left = matrix + i * n + k, *above = matrix + k * n + j;
-                double *rest = matrix + i * n + j;
-                if (rows == TILE_ROWS && last - j >= TILE_COLUMNS) {
-                    subtract_tile(n, count, left, above, rest);
-                } else {
-                    int64_t columns = last - j < TILE_COLUMNS ? last - j : TILE_COLUMNS;
-                    subtract_part(n, count, rows, columns, left, above, rest);
-                }
-            }
-        }
-    }
-}
 
 /* Rows and columns of L from k to before `last`. */
 static bool factorise_block(int64_t n, int64_t k, int64_t last, double *matrix)
@@ -111,20 +66,22 @@ static int threads_for(int64_t rows)
     return chunks_of(rows * rows, ENTRIES_FOR_THREAD).threads;
 }
 
-/* The columns of L from k to before `last` in the rows from there on, and these less what they take. */
+/* The columns of L from k to before `last` in the rows from there on, and these less what they take: each
+ * entry is summed in the order of the columns, as without panels. */
 static void reduce(int64_t n, int64_t k, int64_t last, double *matrix)
 {
-    int64_t rows = n - last, tiles = (rows + PANEL - 1) / PANEL;
-#pragma omp parallel num_threads(threads_for(rows))
+#pragma omp parallel num_threads(threads_for(n - last))
     {
 #pragma omp for schedule(static)
         for (int64_t i = last; i < n; i++) {
             solve_row(n, k, last, i, matrix);
         }
-#pragma omp for schedule(dynamic, 1)
-        for (int64_t t = 0; t < tiles; t++) {
-            int64_t begin = n - (t + 1) * PANEL, end = n - t * PANEL;
-            subtract_panel(n, k, last - k, begin < last ? last : begin, end, matrix);
+#pragma omp for schedule(static, 1)
+        for (int64_t i = last; i < n; i++) {
+            double *row = matrix + i * n;
+            for (int64_t c = k; c < last; c++) {
+                dense_add_row(i + 1 - last, -row[c], matrix + c * n + last, row + last);
+            }
         }
     }
 }
@@ -144,22 +101,6 @@ bool dense_factorise(int64_t n, double *matrix)
 }
 
 void dense_solve(int64_t n, const double *factor, double *x)
-{
-    for (int64_t i = 0; i < n; i++) {
-        for (int64_t k = 0; k < i; k++) {
-            x[i] -= factor[i * n + k] * x[k];
-        }
-        x[i] /= factor[i * n + i];
-    }
-    for (int64_t i = n - 1; i >= 0; i--) {
-        for (int64_t k = i + 1; k < n; k++) {
-            x[i] -= factor[i * n + k] * x[k];
-        }
-        x[i] /= factor[i * n + i];
-    }
-}
-
-void dense_solve_large(int64_t n, const double *factor, double *x)
 {
     for (int64_t k = 0; k < n; k++) {
         x[k] /= factor[k * n + k];

@@ -11,11 +11,11 @@ bool dense_factorise(int64_t n, double *matrix);
 /* x[n] := A^-1 x from the factor. */
 void dense_solve(int64_t n, const double *factor, double *x);
 
-/* The same for large n: several entries at a time, the sums in another order. */
-void dense_solve_large(int64_t n, const double *factor, double *x);
-
 /* The factor becomes A^-1, both triangles. */
 void dense_invert(int64_t n, double *factor);
 
 /* y += a x, for x[count] and y[count]. */
 void dense_add_row(int64_t count, double a, const double *x, double *restrict y);
+
+/* x y, for x[count] and y[count], by partial sums: of every eighth product. */
+double dense_dot(int64_t count, const double *x, const double *y);

@@ -8,25 +8,17 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Consecutive rows, whose entries lie side by side, column by column: zeros above the diagonal. */
-enum { ENVELOPE_GROUP = 8 };
-struct envelope_group {
-    int64_t row, count; /* at most ENVELOPE_GROUP; fewer at the end of a block only */
-    int64_t first;      /* its first column within the envelope, the first row of a group */
-    int64_t start;      /* of column `first` in value[] */
-};
-
 struct envelope {
     int64_t n;
     int64_t *order, *place; /* order[i]: the caller's row at place i; place[order[i]] = i */
-    int64_t *at;            /* of each of the caller's rows: where column 0 would be in value[] */
-    int64_t group_count, size;
-    struct envelope_group *groups; /* group_count */
-    double *value;                 /* size: the factor L */
-    double *scratch;               /* n */
-    int64_t dropped;               /* linearly dependent rows: their diagonal entry of L is infinite */
-    int64_t *block; /* block_count + 1: first group of each diagonal block; rows of different blocks are not
-                       coupled */
+    int64_t *first;         /* of the row at each place: its first column within the envelope, */
+    int64_t *at;            /* and where column 0 would be in value[] */
+    int64_t size;
+    double *value;   /* size: the factor L, row by row */
+    double *scratch; /* n */
+    int64_t dropped; /* linearly dependent rows: their diagonal entry of L is infinite */
+    int64_t *block;  /* block_count + 1: first row of each diagonal block; rows of different blocks are not
+                        coupled */
     int64_t block_count;
 };
 

@@ -57,19 +57,17 @@ TEST(same_bits)
 TEST(solves)
 {
     enum { SIZE = 150 };
-    double *matrix = matrix_of(SIZE), *factor = matrix_of(SIZE), x[SIZE], large[SIZE], residual[SIZE];
+    double *matrix = matrix_of(SIZE), *factor = matrix_of(SIZE), x[SIZE], residual[SIZE];
     assert_true(dense_factorise(SIZE, factor));
     for (int64_t i = 0; i < SIZE; i++) {
-        x[i] = large[i] = residual[i] = (double)(i % 7) - 3.0;
+        x[i] = residual[i] = (double)(i % 7) - 3.0;
     }
     dense_solve(SIZE, factor, x);
-    dense_solve_large(SIZE, factor, large);
     for (int64_t i = 0; i < SIZE * SIZE; i++) {
         residual[i / SIZE] -= matrix[i] * x[i % SIZE];
     }
     for (int64_t i = 0; i < SIZE; i++) {
         AT_MOST(fabs(residual[i]), 1e-12);
-        NEAR_TO(large[i], x[i], 1e-14);
     }
     free(matrix);
     free(factor);

@@ -189,7 +189,7 @@ void preconditioner_apply(struct preconditioner *p, const double *force, double 
     smooth(p, force, acceleration);
     if (p->uses_coarse) {
         coarse_space_restrict(&p->coarse, force, p->amount);
-        dense_solve_large(p->size, p->stiffness_factor, p->amount);
+        dense_solve(p->size, p->stiffness_factor, p->amount);
         coarse_space_prolongate(&p->coarse, p->amount, acceleration);
     }
     preconditioner_project(p, acceleration);
