@@ -74,11 +74,7 @@ static void finish(int axis, double place)
             shape.held[f] = shape.held[f] && fabs(at - place) < 1e-12;
         }
     }
-    struct fold_input input = {.dim = shape.dim,
-                               .node_count = shape.nodes,
-                               .x = shape.x,
-                               .cell_count = shape.cells,
-                               .cell = shape.cell,
+    struct fold_input input = {.cells = {shape.dim, shape.nodes, shape.x, shape.cells, shape.cell},
                                .facet_count = faces.count,
                                .facet = shape.facet,
                                .held = shape.held};
@@ -392,6 +388,7 @@ TEST(everted)
  * within. */
 TEST_IN_EACH_DIM(another_body)
 {
+    double u[MOST_NODES * 3];
     make_two(dim, 0.013);
     assert_int_equal(shape.folds.at_rest.kind, FOLD_WITHIN);
     assert_true(shape.folds.at_rest.cell >= shape.cells / 2);
@@ -407,7 +404,14 @@ TEST_IN_EACH_DIM(another_body)
         for (int64_t k = shape.nodes / 2; k < shape.nodes; k++) {
             y[k * dim] += by[i];
         }
-        assert_int_equal(found().kind, expected[i]);
+        struct fold fold = found();
+        if (fold.kind == FOLD_NONE) {
+            for (int64_t k = 0; k < shape.nodes * dim; k++) {
+                u[k] = y[k] - shape.x[k];
+            }
+            GOOD(folds_find_overlaps(&shape.folds, u, &fold, &error));
+        }
+        assert_int_equal(fold.kind, expected[i]);
     }
 }
 

@@ -96,11 +96,7 @@ TEST(walls_stay_apart)
         FREED_BY(labelled_free) struct labelled made = mesh_of_shape("waves", seed, 5e-3);
         const struct label_cells *mesh = &made.mesh;
         assert_true(mesh->facet_count > 2000);
-        struct fold_input input = {.dim = 3,
-                                   .node_count = mesh->node_count,
-                                   .x = mesh->x,
-                                   .cell_count = mesh->cell_count,
-                                   .cell = mesh->cell,
+        struct fold_input input = {.cells = {3, mesh->node_count, mesh->x, mesh->cell_count, mesh->cell},
                                    .facet_count = mesh->facet_count,
                                    .facet = mesh->facet,
                                    .held = zeros(mesh->facet_count, sizeof *input.held)};

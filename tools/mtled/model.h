@@ -31,7 +31,8 @@ MUST_CHECK enum status model_materials(struct model *model, struct error *error)
 /* Append a curve; *index receives its number. */
 MUST_CHECK enum status model_add_curve(struct model *model, const struct scene_label *label,
                                        const struct scene_curve *curve, int32_t *index, struct error *error);
-/* The directions of fibres from the table of section m, or the stream: an own material for each of its points. */
+/* The directions of fibres from the table of section m, or the stream: an own material for each of its
+ * points. */
 MUST_CHECK enum status model_fibres(struct model *model, int64_t m, struct error *error);
 MUST_CHECK enum status model_conditions(struct model *model, struct error *error);
 /* Let supports stop where the stiffness jumps within a region, as a table of moduli may, and the stiffer side

@@ -47,11 +47,22 @@ void run_fail(struct run *run, enum status status, const char *format, ...)
         run_folds_describe(run, folds, sizeof folds);
     }
     /* fail() makes one line of it, whatever the names in it contain. */
-    fail(&reason, status, "%s%s%s", text, folds[0] != '\0' ? "; " : "", folds);
+    fail(&reason, status, "%s%s%s%s%s", status == STATUS_VERDICT ? run->scene->path : "",
+         status == STATUS_VERDICT ? ": " : "", text, folds[0] != '\0' ? "; " : "", folds);
     tool_note(run->tool, "%s", reason.text);
     (void)process_fails_alone(); /* the others wait while the first one writes */
     run_frames_stop(run, reason.text);
     tool_exit(status);
+}
+
+void run_note(const struct run *run, const char *format, ...)
+{
+    struct error note;
+    va_list values;
+    va_start(values, format);
+    vsnprintf(note.text, sizeof note.text, format, values);
+    va_end(values);
+    tool_note(run->tool, "%s: %s", run->scene->path, note.text);
 }
 
 void run_put(const struct run *run, const char *name, int64_t rows, int64_t cols, const char *attributes,

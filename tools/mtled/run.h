@@ -98,9 +98,11 @@ bool run_progress(void *context, const struct progress *progress);
 void run_clear_progress(const struct display *display);
 
 /* End the run without result: print a message and exit with `status`, see tool_fail. If the scene requests
- * frames, the last good state follows those so far, and the stream says that it is incomplete. */
+ * frames, the last good state follows those so far, and the stream says that it is incomplete. The messages
+ * of verdicts, and notes, begin with the name of the scene. */
 _Noreturn void run_fail(struct run *run, enum status status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
+void run_note(const struct run *run, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 /* For --start: read the result from which the run starts, exits if it is not suitable; start a model at rest
  * from it. */
@@ -233,9 +235,6 @@ void run_checkpoint_remove(struct run *run);
 /* Before the first step; the model must be built. */
 void run_folds_begin(struct run *run);
 void run_folds_free(struct run *run);
-
-/* Bodies that interpenetrate at rest are an error, unless the scene allows folds. */
-void run_folds_at_rest(const struct run *run);
 
 /* Search the state of parameters u at a time of the run; `is_frame`: the state is given as a frame. */
 void run_folds_check(struct run *run, const double *u, double time, bool is_frame);

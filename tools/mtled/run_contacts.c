@@ -90,16 +90,16 @@ void run_contacts_penetrate(struct run *run, double motion, double allowed, bool
     if (missing > most_missing) {
         run->last_good = -1.0; /* all frames have been given */
         run_fail(run, STATUS_VERDICT,
-                 "%s: contacts penetrate by %.2g m, most [contact %s], so that forces are too small by about "
+                 "contacts penetrate by %.2g m, most [contact %s], so that forces are too small by about "
                  "%.2g %%: %s",
-                 run->scene->path, miss, name, 100.0 * fmin(missing, 1.0), remedy);
+                 miss, name, 100.0 * fmin(missing, 1.0), remedy);
     }
     if (missing > 0.0) {
         snprintf(forces, sizeof forces, ", so that forces may be %.2g %% too small", 100.0 * missing);
     }
     if (final && miss > allowed) {
-        tool_note(run->tool, "%s: contacts penetrate by %.2g m, not %.2g m, most [contact %s]%s: %s",
-                  run->scene->path, miss, allowed, name, forces, remedy);
+        run_note(run, "contacts penetrate by %.2g m, not %.2g m, most [contact %s]%s: %s", miss, allowed,
+                 name, forces, remedy);
     }
 }
 
@@ -109,10 +109,10 @@ void run_contacts_touch(const struct run *run)
     for (int64_t c = 0; c < system->contact_count; c++) {
         const struct contact *contact = &system->contacts[c];
         if (contact->deepest == 0.0 && contact->surface.facet_count > 0) {
-            tool_note(run->tool,
-                      "%s: [contact %s]: the body never touches the rigid surface: has that the right unit "
-                      "and place, and does it begin outside the body?",
-                      run->scene->path, run->scene->contacts[contact->section].label.name);
+            run_note(run,
+                     "[contact %s]: the body never touches the rigid surface: has that the right unit "
+                     "and place, and does it begin outside the body?",
+                     run->scene->contacts[contact->section].label.name);
         }
     }
 }
@@ -129,12 +129,12 @@ void run_sliding_judge(const struct run *run)
     TOOL_TRY(run->tool, sliding_measure(&system->sliding, system->dim, system->node_count, system->X, field,
                                         &worst, &error));
     if (worst.share > most_missing) {
-        tool_note(
-            run->tool,
-            "%s: [displacement %s]: the side slides by %.2g m where its radius is %.2g m, at %s m: it leaves "
+        run_note(
+            run,
+            "[displacement %s]: the side slides by %.2g m where its radius is %.2g m, at %s m: it leaves "
             "its surface by %.2g m, as `normal` acts along the normal at rest: use a [contact] with that "
             "surface as rigid one, or smaller loads",
-            run->scene->path, system->conditions[worst.section].name, worst.slide,
+            system->conditions[worst.section].name, worst.slide,
             0.5 * worst.slide * worst.slide / worst.distance, POINT_TEXT(system->dim, worst.place),
             worst.distance);
     }

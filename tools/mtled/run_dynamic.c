@@ -23,8 +23,8 @@ static void judge(struct run *run, const struct dynamics_report *report)
     switch (report->outcome) {
     case DYNAMICS_DONE:
         if (report->largest_drift > DYNAMICS_NOTED_DRIFT) {
-            tool_note(run->tool, "%s: the energy balance is off by %.2g of the largest energy: %s",
-                      scene->path, report->largest_drift, drift_remedy);
+            run_note(run, "the energy balance is off by %.2g of the largest energy: %s",
+                     report->largest_drift, drift_remedy);
         }
         run_folds_judge(run);
         run_contacts_penetrate(run, largest_move, system_penetration_allowed(largest_move), true);
@@ -33,29 +33,28 @@ static void judge(struct run *run, const struct dynamics_report *report)
         return;
     case DYNAMICS_INVERTED:
         run_fail(run, STATUS_VERDICT,
-                 "%s: step %jd, t = %.6g s: integration point %jd at %s is inverted (J = %.3g): apply the "
+                 "step %jd, t = %.6g s: integration point %jd at %s is inverted (J = %.3g): apply the "
                  "load more slowly, or a smaller one, lower time_step_margin (%g), or refine there",
-                 scene->path, report->steps, report->time, report->point, place, report->least_jacobian,
+                 report->steps, report->time, report->point, place, report->least_jacobian,
                  scene->solver.time_step_margin);
     case DYNAMICS_COLLAPSED:
         run_fail(run, STATUS_VERDICT,
-                 "%s: step %jd, t = %.6g s: the critical step has fallen below %g of the first one "
+                 "step %jd, t = %.6g s: the critical step has fallen below %g of the first one "
                  "(%.3g s), by node %jd at %s: apply a smaller load, or refine there",
-                 scene->path, report->steps, report->time, DYNAMICS_LEAST_STEP, report->first_step,
-                 report->node, place);
+                 report->steps, report->time, DYNAMICS_LEAST_STEP, report->first_step, report->node, place);
     case DYNAMICS_DRIFTED:
         run_fail(run, STATUS_VERDICT,
-                 "%s: step %jd, t = %.6g s: the energy balance is off by %.2g of the largest energy (most "
+                 "step %jd, t = %.6g s: the energy balance is off by %.2g of the largest energy (most "
                  "%g), the fastest is node %jd at %s: %s",
-                 scene->path, report->steps, report->time, report->last_drift, DYNAMICS_MOST_DRIFT,
-                 report->node, place, drift_remedy);
+                 report->steps, report->time, report->last_drift, DYNAMICS_MOST_DRIFT, report->node, place,
+                 drift_remedy);
     case DYNAMICS_STOPPED:
         run_checkpoint_stop(run, report->steps);
     case DYNAMICS_TOO_MANY_STEPS:
     default:
         run_fail(run, STATUS_VERDICT,
-                 "%s: t = %.6g s of %.6g s after %jd steps of %.3g s: allow more (max_steps)", scene->path,
-                 report->time, scene->solver.end_time, report->steps, report->least_step);
+                 "t = %.6g s of %.6g s after %jd steps of %.3g s: allow more (max_steps)", report->time,
+                 scene->solver.end_time, report->steps, report->least_step);
     }
 }
 

@@ -22,18 +22,16 @@ static void judge(struct run *run, const struct statics_report *report)
     }
     if (report->outcome == STATICS_CONVERGED) {
         if (report->error > scene->solver.tolerance) {
-            tool_note(run->tool, "%s: estimated error %.2g, not %.2g: %s less", scene->path, report->error,
-                      scene->solver.tolerance,
-                      run->model->system.contact_count > 0
-                          ? "contacts, whose points go from facet to facet, admit no"
-                          : "round-off admits no");
+            run_note(run, "estimated error %.2g, not %.2g: %s less", report->error, scene->solver.tolerance,
+                     run->model->system.contact_count > 0
+                         ? "contacts, whose points go from facet to facet, admit no"
+                         : "round-off admits no");
         }
         if (report->lost) {
-            tool_note(
-                run->tool,
-                "%s: what acts moves the body by no more than round-off, %.2g m: displacements and forces "
-                "are not known",
-                scene->path, statics_round_off(&run->model->system));
+            run_note(run,
+                     "what acts moves the body by no more than round-off, %.2g m: displacements and forces "
+                     "are not known",
+                     statics_round_off(&run->model->system));
         }
         run_stability_check(run, 1.0, true);
         run_contacts_penetrate(run, report->move, report->penetration_allowed, true);
@@ -56,8 +54,8 @@ static void judge(struct run *run, const struct statics_report *report)
                 : ": it hardly resists some motion, as a slender body that has buckled may turn: a larger "
                   "tolerance, or supports against that motion may help";
         run_fail(run, STATUS_VERDICT,
-                 "%s: step %jd%s: the estimated error stays at %.2g of the displacement, most of all at %s%s",
-                 scene->path, report->steps, load, report->error, place, remedy);
+                 "step %jd%s: the estimated error stays at %.2g of the displacement, most of all at %s%s",
+                 report->steps, load, report->error, place, remedy);
     }
     if (report->outcome == STATICS_STOPPED) {
         run_checkpoint_stop(run, report->steps);
@@ -65,21 +63,21 @@ static void judge(struct run *run, const struct statics_report *report)
     if (report->outcome == STATICS_INVERTED) {
         const double *x = run->model->assembly.x + report->inverted_point * scene->dim;
         run_fail(run, STATUS_VERDICT,
-                 "%s: step %jd%s: integration point %jd at %s inverts (J = %.3g), however slowly the load "
+                 "step %jd%s: integration point %jd at %s inverts (J = %.3g), however slowly the load "
                  "grows: %s",
-                 scene->path, report->steps, load, report->inverted_point, POINT_TEXT(scene->dim, x),
+                 report->steps, load, report->inverted_point, POINT_TEXT(scene->dim, x),
                  report->least_jacobian, beyond_limit);
     }
     if (report->outcome == STATICS_AWAY) {
         run_fail(run, STATUS_VERDICT,
-                 "%s: step %jd%s: the body moves on, by %.3g m so far, and does not come to rest: %s",
-                 scene->path, report->steps, load, report->move,
+                 "step %jd%s: the body moves on, by %.3g m so far, and does not come to rest: %s",
+                 report->steps, load, report->move,
                  system_has_friction(&run->model->system) ? slides + 2 : beyond_limit);
     }
     run_fail(run, STATUS_VERDICT,
-             "%s: not converged after %jd steps%s: estimated remaining error %.2g of the displacement, "
+             "not converged after %jd steps%s: estimated remaining error %.2g of the displacement, "
              "most of all at %s: allow more (max_steps), or hold the body against rigid motion",
-             scene->path, report->steps, load, report->error, place);
+             report->steps, load, report->error, place);
 }
 
 /* The estimated error of the iteration, m: of the relaxation, and of the remaining penetration of
@@ -203,11 +201,10 @@ static void judge_steps(const struct run *run, const struct statics_report *repo
         shear_modulus = fmax(shear_modulus, body->materials[m].shear_modulus);
     }
     if (error > error_noted && error * body->prony.time_error.stress > shear_modulus * left) {
-        tool_note(
-            run->tool,
-            "%s: the steps of time make an error of up to about %.2g of the largest stress: more of them "
-            "(time_steps) make less",
-            run->scene->path, error);
+        run_note(run,
+                 "the steps of time make an error of up to about %.2g of the largest stress: more of them "
+                 "(time_steps) make less",
+                 error);
     }
 }
 

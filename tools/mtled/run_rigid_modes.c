@@ -167,13 +167,11 @@ void run_check_rigid_modes(struct run *run)
                 snprintf(others, sizeof others, "; %jd more bod%s free as well", more,
                          more == 1 ? "y is" : "ies are");
             }
-            run_fail(run, STATUS_VERDICT,
-                     "%s: nothing holds %s: it %s: add a [displacement] that forbids that%s",
-                     run->scene->path, told.body, told.what, others);
+            run_fail(run, STATUS_VERDICT, "nothing holds %s: it %s: add a [displacement] that forbids that%s",
+                     told.body, told.what, others);
         }
         if (run->verbose) {
-            tool_note(run->tool, "%s: only contact holds %s: it %s otherwise", run->scene->path, told.body,
-                      told.what);
+            run_note(run, "only contact holds %s: it %s otherwise", told.body, told.what);
         }
     }
 }
@@ -213,10 +211,9 @@ void run_check_lost(const struct run *run, double error_left)
             continue;
         }
         struct told told = tell(run, &bodies, b);
-        tool_note(
-            run->tool,
-            "%s: at the end no contact presses %s, which nothing else holds: it %s, and lies anywhere; it "
-            "may have slipped out of its contacts or turned over: frames show when",
-            run->scene->path, told.body, told.what);
+        run_note(run,
+                 "at the end no contact presses %s, which nothing else holds: it %s, and lies anywhere; it "
+                 "may have slipped out of its contacts or turned over: frames show when",
+                 told.body, told.what);
     }
 }

@@ -1,10 +1,15 @@
-/* Preparation of the search for folds, on the body at rest; see folds.h. */
+/* Preparation of the search for folds, on the body at rest, and the search for parts that overlap; see
+ * folds.h. */
 #include "solid/folds/folds.h"
 
 #include "approx/cells/parts.h"
+#include "approx/cells/quality.h"
+#include "approx/points/point_grid.h"
 #include "base/keyed.h"
 #include "base/memory.h"
-#include "solid/folds/folds_private.h"
+#include "base/round_off.h"
+#include "base/sets.h"
+#include "base/vector.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -19,7 +24,7 @@ static int compare_rings(const void *left, const void *right)
 static int32_t find_ring(const struct folds *folds, const int32_t *side)
 {
     struct fold_ring key = {.node = {-1, -1}};
-    sort_nodes(folds->input.dim - 1, side, key.node);
+    sort_nodes(folds->input.cells.dim - 1, side, key.node);
     const struct fold_ring *ring =
         bsearch(&key, folds->rings, (size_t)folds->ring_count, sizeof key, compare_rings);
     return ring != NULL ? (int32_t)(ring - folds->rings) : -1;
@@ -34,18 +39,18 @@ static const int parts_3d[6][4] = {{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2},
 /* The corners of a cell, those of its part `part` % (3 or 6) first; of the cell `part` / (3 or 6). */
 static void part_nodes(const struct fold_input *input, int64_t part, int32_t node[4])
 {
-    int dim = input->dim, parts = dim == 2 ? 3 : 6;
+    int dim = input->cells.dim, parts = dim == 2 ? 3 : 6;
     const int *order = dim == 2 ? parts_2d[part % parts] : parts_3d[part % parts];
     for (int k = 0; k <= dim; k++) {
-        node[k] = input->cell[part / parts * (dim + 1) + order[k]];
+        node[k] = input->cells.node[part / parts * (dim + 1) + order[k]];
     }
 }
 
 /* The cells around each ring. */
 static enum status list_cells(struct folds *folds, struct error *error)
 {
-    int corners = folds->input.dim + 1;
-    int64_t count = folds->input.cell_count * (corners == 3 ? 3 : 6);
+    int corners = folds->input.cells.dim + 1;
+    int64_t count = folds->input.cells.count * (corners == 3 ? 3 : 6);
     SCRATCH int32_t *part = NULL;
     int32_t node[4];
     NEW_SCRATCH(int32_t, ring, count, error);
@@ -66,9 +71,9 @@ static enum status list_cells(struct folds *folds, struct error *error)
 static enum status build_rings(struct folds *folds, struct error *error)
 {
     const struct fold_input *input = &folds->input;
-    int64_t count = input->facet_count * input->dim;
+    int64_t count = input->facet_count * input->cells.dim;
     NEW_SCRATCH(struct ridge, sides, count, error);
-    ridges_list(input->dim, input->facet_count, input->facet, sides);
+    ridges_list(input->cells.dim, input->facet_count, input->facet, sides);
     RETURN_IF_ERROR(NEW_ARRAY(&folds->rings, count, error));
     for (int64_t i = 0; i < count; i = ridges_end(count, sides, i)) {
         folds->rings[folds->ring_count++] =
@@ -80,9 +85,123 @@ static enum status build_rings(struct folds *folds, struct error *error)
 static enum status mark_held(struct folds *folds, struct error *error)
 {
     const struct fold_input *input = &folds->input;
-    RETURN_IF_ERROR(NEW_ARRAY(&folds->is_held, input->node_count, error));
-    for (int64_t i = 0; i < input->facet_count * input->dim; i++) {
-        folds->is_held[input->facet[i]] |= input->held[i / input->dim];
+    RETURN_IF_ERROR(NEW_ARRAY(&folds->is_held, input->cells.node_count, error));
+    for (int64_t i = 0; i < input->facet_count * input->cells.dim; i++) {
+        folds->is_held[input->facet[i]] |= input->held[i / input->cells.dim];
+    }
+    return STATUS_OK;
+}
+
+/* The surfaces of the boundary, facets that have nodes together. */
+static enum status find_surfaces(struct folds *folds, struct error *error)
+{
+    const struct fold_input *input = &folds->input;
+    int dim = input->cells.dim;
+    NEW_SCRATCH(int32_t, parent, input->cells.node_count, error);
+    RETURN_IF_ERROR(NEW_ARRAY(&folds->surface, input->facet_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&folds->enclosed, 2 * input->cells.node_count, error));
+    set_join_cells(input->cells.node_count, input->facet_count, dim, input->facet, parent);
+    for (int64_t f = 0; f < input->facet_count; f++) {
+        folds->surface[f] = set_first(parent, input->facet[f * dim]);
+    }
+    return STATUS_OK;
+}
+
+static void find_middle(const struct folds *folds, const double *x, int64_t cell, double *middle)
+{
+    int dim = folds->input.cells.dim, corners = dim + 1;
+    vector_middle(dim, x, corners, folds->input.cells.node + cell * corners, middle);
+}
+
+/* Name the first cell that is within another one. */
+static void name_cell(const struct folds *folds, int64_t cell, struct fold *fold)
+{
+    fold->kind = FOLD_WITHIN;
+    fold->cell = cell;
+    find_middle(folds, folds->input.cells.x, cell, fold->place);
+}
+
+/* Whether a cell contains a point, barycentric coordinates being larger than
+ * FOLD_BEYOND_FACET. */
+static bool contains(const struct folds *folds, int64_t cell, const double *point)
+{
+    int dim = folds->input.cells.dim, corners = dim + 1;
+    const double *vertex[4] = {NULL, NULL, NULL, NULL};
+    for (int k = 0; k < corners; k++) {
+        vertex[k] = folds->y + (int64_t)folds->input.cells.node[cell * corners + k] * dim;
+    }
+    double whole = simplex_determinant(dim, vertex[0], vertex[1], vertex[2], vertex[3]);
+    for (int k = 0; k < corners; k++) {
+        const double *kept = vertex[k];
+        vertex[k] = point;
+        double part = simplex_determinant(dim, vertex[0], vertex[1], vertex[2], vertex[3]);
+        vertex[k] = kept;
+        if (!(part / whole > FOLD_BEYOND_FACET)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* The box around a cell. */
+static struct box box_around(const struct folds *folds, int64_t cell)
+{
+    int dim = folds->input.cells.dim;
+    return box_of_nodes(dim, folds->y, folds->input.cells.node + cell * (dim + 1), dim + 1);
+}
+
+/* Whether two cells have a node together. */
+static bool are_neighbours(const struct folds *folds, int64_t c, int64_t other)
+{
+    int corners = folds->input.cells.dim + 1;
+    const int32_t *one = folds->input.cells.node + c * corners,
+                  *two = folds->input.cells.node + other * corners;
+    for (int k = 0; k < corners * corners; k++) {
+        if (one[k / corners] == two[k % corners]) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Whether a cell is left out of the search: slivers do not follow the field between their nodes, nor do cells
+ * that are inverted a little or because they are flat. */
+static bool is_left_out(const struct folds *folds, int64_t cell)
+{
+    struct cells now = folds->input.cells;
+    now.x = folds->y;
+    return cell_quality(&folds->input.cells, cell) < POOR_QUALITY || cell_volume(&now, cell) <= 0.0;
+}
+
+/* Look for cells whose middle is deep in a cell of another body, or else in any cell that they share no node
+ * with. Boundaries that cross at nodes, or lie on each other, are not found as crossings. */
+static enum status look_for_overlaps(struct folds *folds, bool of_bodies, struct fold *fold,
+                                     struct error *error)
+{
+    int dim = folds->input.cells.dim;
+    int64_t count = folds->input.cells.count;
+    FREED_BY(point_grid_free) struct point_grid grid = {0};
+    FREED_BY(index_list_free) struct index_list near = {0};
+    NEW_SCRATCH(double, middle, count * dim, error);
+    NEW_SCRATCH(double, radius, count, error);
+    for (int64_t c = 0; c < count; c++) {
+        find_middle(folds, folds->y, c, middle + c * dim);
+        radius[c] = ROUND_OFF * folds->extent;
+    }
+    RETURN_IF_ERROR(point_grid_build(&grid, dim, count, middle, radius, error));
+    for (int64_t c = 0; c < count; c++) {
+        struct box box = box_around(folds, c);
+        near.count = 0;
+        RETURN_IF_ERROR(point_grid_query_box(&grid, box.low, box.high, 1.0, &near, error));
+        for (int64_t i = 0; i < near.count; i++) {
+            int32_t other = near.index[i];
+            bool apart =
+                folds->part[other] != folds->part[c] || (!of_bodies && !are_neighbours(folds, c, other));
+            if (apart && contains(folds, c, middle + (int64_t)other * dim) && !is_left_out(folds, c) &&
+                !is_left_out(folds, other) && fold->count++ == 0) {
+                name_cell(folds, other, fold);
+            }
+        }
     }
     return STATUS_OK;
 }
@@ -94,24 +213,26 @@ static bool interpenetrates(const struct fold *fold)
 
 enum status folds_build(const struct fold_input *input, struct folds *folds, struct error *error)
 {
-    int64_t size = input->node_count * input->dim;
+    int64_t size = input->cells.node_count * input->cells.dim;
+    int32_t bodies;
     *folds = (struct folds){.input = *input};
-    struct box box = box_of(input->dim, input->node_count, input->x);
+    struct box box = box_of(input->cells.dim, input->cells.node_count, input->cells.x);
     folds->extent = box_diagonal(&box);
     RETURN_IF_ERROR(NEW_ARRAY(&folds->y, size, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&folds->oriented, input->cell_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&folds->oriented, input->cells.count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&folds->boxes, input->facet_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&folds->found, ranks_count(input->ranks), error));
     RETURN_IF_ERROR(build_rings(folds, error));
     RETURN_IF_ERROR(mark_held(folds, error));
-    RETURN_IF_ERROR(folds_find_surfaces(folds, error));
+    RETURN_IF_ERROR(find_surfaces(folds, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&folds->part, input->cells.count, error));
+    RETURN_IF_ERROR(cells_parts(&input->cells, folds->part, &bodies, error));
     NEW_SCRATCH(double, u, size, error);
-    NEW_SCRATCH(bool, stopped, input->node_count, error);
-    RETURN_IF_ERROR(folds_find_bodies(folds, error));
+    NEW_SCRATCH(bool, stopped, input->cells.node_count, error);
     struct fold at_rest = folds_find(folds, u, stopped);
-    if (!interpenetrates(&at_rest) && folds->body_count > 1) {
+    if (!interpenetrates(&at_rest) && bodies > 1) {
         at_rest = FOLD_NOTHING;
-        RETURN_IF_ERROR(folds_look_for_overlaps(folds, true, &at_rest, error));
+        RETURN_IF_ERROR(look_for_overlaps(folds, true, &at_rest, error));
     }
     if (interpenetrates(&at_rest)) {
         folds->at_rest = at_rest;
@@ -119,9 +240,16 @@ enum status folds_build(const struct fold_input *input, struct folds *folds, str
     return STATUS_OK;
 }
 
+enum status folds_find_overlaps(struct folds *folds, const double *u, struct fold *fold, struct error *error)
+{
+    *fold = FOLD_NOTHING;
+    folds_take_positions(folds, u);
+    return folds->at_rest.kind == FOLD_NONE ? look_for_overlaps(folds, false, fold, error) : STATUS_OK;
+}
+
 void folds_free(struct folds *folds)
 {
     FREE_ALL(folds->rings, folds->ring_ptr, folds->ring_cell, folds->oriented, folds->is_held, folds->part,
-             folds->bodies, folds->surface, folds->enclosed, folds->y, folds->boxes, folds->found);
+             folds->surface, folds->enclosed, folds->y, folds->boxes, folds->found);
     *folds = (struct folds){0};
 }

@@ -15,6 +15,7 @@
  * orientation (approx/field/field.h). */
 #pragma once
 
+#include "approx/cells/cells.h"
 #include "approx/cells/crossing.h"
 #include "base/ranks.h"
 #include "base/status.h"
@@ -40,16 +41,18 @@ struct fold {
     double place[3];  /* at rest, m: middle of the cell or of the first facet */
 };
 
+#define FOLD_NOTHING ((struct fold){.kind = FOLD_NONE, .cell = -1, .facet = {-1, -1}})
+
+/* Depth, by the length of a facet, up to which facets that cross each other are no fold: the field at the
+ * nodes is as uncertain. */
+#define FOLD_BEYOND_FACET 0.05
+
 struct fold_input {
-    int dim;
-    int64_t node_count;
-    const double *x; /* node_count * dim, at rest, m */
-    int64_t cell_count;
-    const int32_t *cell; /* cell_count * (dim + 1), positively oriented */
+    struct cells cells; /* at rest, positively oriented */
     int64_t facet_count;
-    const int32_t *facet; /* facet_count * dim: the boundary, oriented outward */
-    const bool
-        *held; /* facet_count: whether the displacement is prescribed there, if only along one direction */
+    const int32_t *facet;      /* facet_count * dim: the boundary, oriented outward */
+    const bool *held;          /* facet_count: whether the displacement is prescribed there, if only along one
+                                  direction */
     const struct ranks *ranks; /* processes that share the search; NULL: one */
 };
 
@@ -57,12 +60,6 @@ struct fold_input {
 struct fold_ring {
     int32_t node[2]; /* ascending; in 2D the second is -1 */
     int64_t facet;   /* one of those that meet there */
-};
-
-/* A cell of a connected body (see cells_parts), sorted by the first coordinate of its middle as deformed. */
-struct fold_body {
-    struct placed cell;
-    double middle[3];
 };
 
 struct folds {
@@ -78,9 +75,7 @@ struct folds {
     bool *is_held;  /* node_count: of a prescribed facet */
     double extent;  /* diagonal of the box around the nodes, m */
     int32_t *part;  /* cell_count: the connected body of each cell */
-    int32_t *surface;         /* facet_count: a node of the connected surface of each facet */
-    struct fold_body *bodies; /* body_count */
-    int64_t body_count;
+    int32_t *surface; /* facet_count: a node of the connected surface of each facet */
     struct fold
         at_rest; /* FOLD_CREASE, FOLD_CROSSING or FOLD_WITHIN: bodies, or parts of one, interpenetrate at
                     rest. Then the last two kinds are not searched for, nor FOLD_CREASE if it is that */
@@ -114,3 +109,6 @@ int64_t folds_list_flat(const struct folds *folds, int32_t *cell);
  * *fold is FOLD_NONE or FOLD_WITHIN; none where bodies interpenetrate at rest. STATUS_SYSTEM for memory. */
 MUST_CHECK enum status folds_find_overlaps(struct folds *folds, const double *u, struct fold *fold,
                                            struct error *error);
+
+/* Set folds->y to the positions displaced by u: of lib/solid/folds. */
+void folds_take_positions(struct folds *folds, const double *u);

@@ -1,7 +1,10 @@
 /* The search for folds of a displacement field; see folds.h. */
-#include "solid/folds/folds_private.h"
+#include "solid/folds/folds.h"
 
 #include "base/chunks.h"
+#include "base/round_off.h"
+#include "base/vector.h"
+#include "solid/contact/contact.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -13,11 +16,20 @@ enum { ITEMS_FOR_THREAD = 2000 }; /* see chunks_of */
 static const double turned_share = 0.1;     /* see is_turned_over; twice as much: folds_list_flat */
 static const double uncertain_share = 0.25; /* see most_angle */
 
-void fold_name_facets(const struct fold_input *input, int64_t facet, int64_t other, struct fold *fold)
+/* Deformed position of a node, dim components. */
+static const double *fold_position(const struct folds *folds, int32_t node)
+{
+    return folds->y + (int64_t)node * folds->input.cells.dim;
+}
+
+/* Set the two facets of a fold, `other` -1 where there is none, and its place, the middle of the first facet
+ * at rest. */
+static void name_facets(const struct fold_input *input, int64_t facet, int64_t other, struct fold *fold)
 {
     fold->facet[0] = facet;
     fold->facet[1] = other;
-    vector_middle(input->dim, input->x, input->dim, input->facet + facet * input->dim, fold->place);
+    vector_middle(input->cells.dim, input->cells.x, input->cells.dim, input->facet + facet * input->cells.dim,
+                  fold->place);
 }
 
 /* Combine the folds of consecutive shares: the first fold of the kind that comes first, and the number of
@@ -61,7 +73,7 @@ static struct fold search(const struct folds *folds, int64_t count, search_range
 static bool is_flattened(const struct folds *folds, const int32_t *node)
 {
     bool all = true, any = false;
-    for (int k = 0; k <= folds->input.dim; k++) {
+    for (int k = 0; k <= folds->input.cells.dim; k++) {
         all = all && (folds->is_held[node[k]] || folds->stopped[node[k]]);
         any = any || folds->stopped[node[k]];
     }
@@ -71,7 +83,7 @@ static bool is_flattened(const struct folds *folds, const int32_t *node)
 /* simplex_determinant of a cell. */
 static double cell_size(const struct folds *folds, const int32_t *node)
 {
-    int dim = folds->input.dim;
+    int dim = folds->input.cells.dim;
     return simplex_determinant(dim, fold_position(folds, node[0]), fold_position(folds, node[1]),
                                fold_position(folds, node[2]), fold_position(folds, node[dim]));
 }
@@ -102,7 +114,7 @@ static double flatness(int dim, const double *y, const int32_t *node)
  */
 static bool is_turned_over(const struct folds *folds, const int32_t *node)
 {
-    return !(flatness(folds->input.dim, folds->y, node) <= turned_share);
+    return !(flatness(folds->input.cells.dim, folds->y, node) <= turned_share);
 }
 
 /* Search for cells that are turned over. */
@@ -110,15 +122,15 @@ static struct fold search_cells(const struct folds *folds, int64_t begin, int64_
 {
     const struct fold_input *input = &folds->input;
     struct fold fold = FOLD_NOTHING;
-    int dim = input->dim, corners = dim + 1;
+    int dim = input->cells.dim, corners = dim + 1;
     for (int64_t c = begin; c < end; c++) {
-        const int32_t *node = input->cell + c * corners;
+        const int32_t *node = input->cells.node + c * corners;
         bool folded = !(cell_size(folds, node) > 0.0) && is_turned_over(folds, node) && !folds->oriented[c] &&
                       !is_flattened(folds, node);
         if (folded && fold.count++ == 0) {
             fold.kind = FOLD_CELL;
             fold.cell = c;
-            vector_middle(dim, input->x, corners, node, fold.place);
+            vector_middle(dim, input->cells.x, corners, node, fold.place);
         }
     }
     return fold;
@@ -155,13 +167,13 @@ static double angle_around(int dim, const double *y, const int32_t *node)
  * uncertain. Where the body is in contact with itself, a twentieth, since contact acts on averages. */
 static double most_angle(const struct folds *folds, int64_t r)
 {
-    int dim = folds->input.dim;
+    int dim = folds->input.cells.dim;
     const struct fold_ring *ring = &folds->rings[r];
     const bool *in_contact = folds->in_contact;
     double changed = 0.0;
     for (int64_t i = folds->ring_ptr[r]; i < folds->ring_ptr[r + 1]; i++) {
         const int32_t *node = folds->ring_cell + i * (dim + 1);
-        changed += fabs(angle_around(dim, folds->y, node) - angle_around(dim, folds->input.x, node));
+        changed += fabs(angle_around(dim, folds->y, node) - angle_around(dim, folds->input.cells.x, node));
     }
     bool closed =
         in_contact != NULL && in_contact[ring->node[0]] && (ring->node[1] < 0 || in_contact[ring->node[1]]);
@@ -172,25 +184,166 @@ static double most_angle(const struct folds *folds, int64_t r)
 static struct fold search_rings(const struct folds *folds, int64_t begin, int64_t end)
 {
     struct fold fold = FOLD_NOTHING;
-    int corners = folds->input.dim + 1;
+    int corners = folds->input.cells.dim + 1;
     for (int64_t r = begin; r < end; r++) {
         double sum = 0.0;
         for (int64_t i = folds->ring_ptr[r]; i < folds->ring_ptr[r + 1]; i++) {
-            sum += angle_around(folds->input.dim, folds->y, folds->ring_cell + i * corners);
+            sum += angle_around(folds->input.cells.dim, folds->y, folds->ring_cell + i * corners);
         }
         if (sum > full_turn && sum > most_angle(folds, r) && fold.count++ == 0) {
-            fold_name_facets(&folds->input, folds->rings[r].facet, -1, &fold);
+            name_facets(&folds->input, folds->rings[r].facet, -1, &fold);
         }
     }
     fold.kind = fold.count > 0 ? FOLD_CREASE : FOLD_NONE;
     return fold;
 }
 
+/* The depth of facet g behind the plane of facet f; *width receives the length of f (3D: root of twice the
+ * area). */
+static double reach_behind(const struct folds *folds, int64_t f, int64_t g, double *width)
+{
+    int dim = folds->input.cells.dim;
+    double area[3], offset[3], deepest = 0.0;
+    const int32_t *node = folds->input.facet + f * dim;
+    face_area_vector(dim, folds->y, node, area);
+    double size = vector_length(dim, area);
+    for (int k = 0; k < dim; k++) {
+        vector_subtract(dim, fold_position(folds, folds->input.facet[g * dim + k]),
+                        fold_position(folds, node[0]), offset);
+        deepest = fmax(deepest, -vector_dot(dim, area, offset) / size);
+    }
+    *width = dim == 2 ? size : sqrt(2.0 * size);
+    return deepest;
+}
+
+/* 3D: the least distance by which one facet can be moved off the other along a normal to two of their edges
+ * (separating axes). */
+static double apart_across_edges(const struct folds *folds, int64_t f, int64_t g)
+{
+    const int32_t *one = folds->input.facet + f * 3, *other = folds->input.facet + g * 3;
+    double least = INFINITY, side[3], other_side[3], axis[3];
+    for (int k = 0; k < 9; k++) {
+        vector_subtract(3, fold_position(folds, one[(k / 3 + 1) % 3]), fold_position(folds, one[k / 3]),
+                        side);
+        vector_subtract(3, fold_position(folds, other[(k % 3 + 1) % 3]), fold_position(folds, other[k % 3]),
+                        other_side);
+        vector_cross(side, other_side, axis);
+        double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+        double size2 = vector_dot(3, axis, axis);
+        for (int i = 0; i < 6; i++) {
+            double place = vector_dot(3, axis, fold_position(folds, i < 3 ? one[i] : other[i - 3]));
+            low[i / 3] = fmin(low[i / 3], place);
+            high[i / 3] = fmax(high[i / 3], place);
+        }
+        if (size2 > ROUND_OFF * vector_dot(3, side, side) * vector_dot(3, other_side, other_side)) {
+            least = fmin(least, fmin(high[0] - low[1], high[1] - low[0]) / sqrt(size2));
+        }
+    }
+    return least;
+}
+
+/* Whether a node of the facet is in contact with another part of the body. */
+static bool is_in_contact(const struct folds *folds, int64_t f)
+{
+    bool any = false;
+    for (int k = 0; k < folds->input.cells.dim && folds->in_contact != NULL; k++) {
+        any = any || folds->in_contact[folds->input.facet[f * folds->input.cells.dim + k]];
+    }
+    return any;
+}
+
+/* Whether two facets that cross penetrate each other by more than a twentieth of the larger one: the depth is
+ * the distance by which one of them must be moved to separate them. A smaller depth is within the uncertainty
+ * of the field at the nodes, as conditions and contacts act on averages: a node beside a long edge of the
+ * body may pass through its chord. Where parts of the body are in contact, a corner of one may penetrate the
+ * chord of the other, since the contact acts at points a fifth of a facet away from its ends; contact acts up
+ * to half of the larger facet. */
+static bool are_deep(const struct folds *folds, int64_t f, int64_t g)
+{
+    double width[2];
+    double depth = fmin(reach_behind(folds, f, g, &width[0]), reach_behind(folds, g, f, &width[1]));
+    depth = folds->input.cells.dim == 3 ? fmin(depth, apart_across_edges(folds, f, g)) : depth;
+    bool in_contact = is_in_contact(folds, f) && is_in_contact(folds, g);
+    return depth > (in_contact ? CONTACT_MOST_DEPTH : FOLD_BEYOND_FACET) * fmax(width[0], width[1]);
+}
+
+/* Fill folds->boxes, ascending along the first axis. */
+static void sort_boxes(struct folds *folds)
+{
+    int64_t count = folds->input.facet_count;
+    for (int64_t f = 0; f < count; f++) {
+        folds->boxes[f].facet.item = f;
+    }
+    facet_boxes_sort(folds->input.cells.dim, folds->y, folds->input.facet, count, folds->boxes);
+}
+
+/* Search the boxes [begin, end) and those behind them for facets that cross. */
+static struct fold search_boxes(const struct folds *folds, int64_t begin, int64_t end)
+{
+    struct fold fold = FOLD_NOTHING;
+    int dim = folds->input.cells.dim;
+    const int32_t *facet = folds->input.facet;
+    int64_t count = folds->input.facet_count;
+    const struct facet_box *boxes = folds->boxes;
+    for (int64_t i = begin; i < end; i++) {
+        int64_t f = boxes[i].facet.item;
+        for (int64_t k = i + 1; k < count && boxes[k].facet.place <= boxes[i].box.high[0]; k++) {
+            int64_t g = boxes[k].facet.item;
+            if (!box_meets(&boxes[i].box, &boxes[k].box) ||
+                !facets_cross(dim, folds->y, facet + f * dim, facet + g * dim, ROUND_OFF * folds->largest) ||
+                !are_deep(folds, f, g)) {
+                continue;
+            }
+            if (fold.count++ == 0) {
+                name_facets(&folds->input, f < g ? f : g, f < g ? g : f, &fold);
+            }
+        }
+    }
+    fold.kind = fold.count > 0 ? FOLD_CROSSING : FOLD_NONE;
+    return fold;
+}
+
+/* The part of a facet in the volume that its surface encloses at positions x, times dim. */
+static double facet_part(const struct folds *folds, const double *x, int64_t f)
+{
+    int dim = folds->input.cells.dim;
+    const int32_t *node = folds->input.facet + f * dim;
+    double middle[3], area[3];
+    vector_middle(dim, x, dim, node, middle);
+    add_scaled(dim, -1.0, x + (int64_t)folds->surface[f] * dim, middle);
+    face_area_vector(dim, x, node, area);
+    return vector_dot(dim, middle, area);
+}
+
+/* Look for surfaces that enclosed a volume at rest, as the outer ones of bodies do, and enclose less than
+ * none: the body is outside of them. No motion without folds leads there, though at the end nothing crosses
+ * and no cell is inverted. */
+static void find_everted(const struct folds *folds, struct fold *fold)
+{
+    const struct fold_input *input = &folds->input;
+    double *rest = folds->enclosed, *now = folds->enclosed + input->cells.node_count;
+    double least = ROUND_OFF * pow(folds->extent, input->cells.dim);
+    for (int64_t f = 0; f < input->facet_count; f++) {
+        rest[folds->surface[f]] = now[folds->surface[f]] = 0.0;
+    }
+    for (int64_t f = 0; f < input->facet_count; f++) {
+        rest[folds->surface[f]] += facet_part(folds, input->cells.x, f);
+        now[folds->surface[f]] += facet_part(folds, folds->y, f);
+    }
+    for (int64_t f = 0; f < input->facet_count; f++) {
+        int32_t s = folds->surface[f];
+        if (rest[s] > least && now[s] < 0.0 && fold->count++ == 0) {
+            name_facets(input, f, -1, fold);
+            fold->kind = FOLD_EVERTED;
+        }
+    }
+}
+
 void folds_take_positions(struct folds *folds, const double *u)
 {
     folds->largest = 0.0;
-    for (int64_t i = 0; i < folds->input.node_count * folds->input.dim; i++) {
-        folds->y[i] = folds->input.x[i] + u[i];
+    for (int64_t i = 0; i < folds->input.cells.node_count * folds->input.cells.dim; i++) {
+        folds->y[i] = folds->input.cells.x[i] + u[i];
         folds->largest = fmax(folds->largest, fabs(folds->y[i]));
     }
 }
@@ -199,10 +352,10 @@ int64_t folds_list_flat(const struct folds *folds, int32_t *cell)
 {
     const struct fold_input *input = &folds->input;
     int64_t count = 0;
-    for (int64_t c = 0; c < input->cell_count; c++) {
-        const int32_t *node = input->cell + c * (input->dim + 1);
+    for (int64_t c = 0; c < input->cells.count; c++) {
+        const int32_t *node = input->cells.node + c * (input->cells.dim + 1);
         if (!(cell_size(folds, node) > 0.0) && is_turned_over(folds, node) &&
-            flatness(input->dim, input->x, node) < 2.0 * turned_share) {
+            flatness(input->cells.dim, input->cells.x, node) < 2.0 * turned_share) {
             cell[count++] = (int32_t)c;
         }
     }
@@ -213,18 +366,15 @@ struct fold folds_find(struct folds *folds, const double *u, const bool *stopped
 {
     folds_take_positions(folds, u);
     folds->stopped = stopped;
-    struct fold fold = search(folds, folds->input.cell_count, search_cells);
+    struct fold fold = search(folds, folds->input.cells.count, search_cells);
     if (fold.kind == FOLD_NONE && folds->at_rest.kind != FOLD_CREASE) {
         fold = search(folds, folds->ring_count, search_rings);
     }
     if (fold.kind == FOLD_NONE && folds->at_rest.kind == FOLD_NONE) {
-        folds_sort_boxes(folds);
-        fold = search(folds, folds->input.facet_count, folds_search_boxes);
+        sort_boxes(folds);
+        fold = search(folds, folds->input.facet_count, search_boxes);
         if (fold.kind == FOLD_NONE) {
-            folds_find_within(folds, &fold);
-        }
-        if (fold.kind == FOLD_NONE) {
-            folds_find_everted(folds, &fold);
+            find_everted(folds, &fold);
         }
     }
     return fold;
