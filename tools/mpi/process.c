@@ -8,7 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
-#include <time.h>
 #include <unistd.h>
 
 /* Time that a failing process waits for the others to fail as well, s. */
@@ -17,11 +16,11 @@ static const double most_wait = 10.0;
 /* State of the process. */
 static struct {
     struct ranks ranks;
-    int *count, *place;        /* scratch: of each process */
-    MPI_Request *requests;     /* 2 for each process */
-    MPI_Comm ends;             /* communicator for failures of processes */
-    double sent, waited, spun; /* bytes sent; time of sending and waiting, and processor time of these, s */
-    bool patient;              /* waiting processes sleep; false: they spin */
+    int *count, *place;    /* scratch: of each process */
+    MPI_Request *requests; /* 2 for each process */
+    MPI_Comm ends;         /* communicator for failures of processes */
+    double sent;           /* bytes */
+    bool patient;          /* waiting processes sleep; false: they spin */
     bool failing, alone, ended;
     MPI_Request failed;
 } own;
@@ -30,29 +29,6 @@ static _Noreturn void fail_memory_now(void)
 {
     fprintf(stderr, "mtled: out of memory\n");
     _exit((int)STATUS_SYSTEM);
-}
-
-static double processor_seconds(clockid_t clock)
-{
-    struct timespec now;
-    clock_gettime(clock, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
-/* Measures the time of a message, with waiting, which is added to own.waited and own.spun. */
-struct cost_of_message {
-    double started, processor;
-};
-
-static struct cost_of_message begin_message(void)
-{
-    return (struct cost_of_message){clock_seconds(), processor_seconds(CLOCK_THREAD_CPUTIME_ID)};
-}
-
-static void end_message(const struct cost_of_message *message)
-{
-    own.waited += clock_seconds() - message->started;
-    own.spun += processor_seconds(CLOCK_THREAD_CPUTIME_ID) - message->processor;
 }
 
 static MPI_Datatype type_of(size_t size)
@@ -83,28 +59,20 @@ static void wait_for(int count, MPI_Request *requests)
 
 static void gather(const struct ranks *ranks, void *items, size_t size, const int64_t *first)
 {
-    struct cost_of_message message = begin_message();
     MPI_Datatype type = type_of(size);
     for (int r = 0; r < ranks->count; r++) {
         own.count[r] = first != NULL ? (int)(first[r + 1] - first[r]) : 1;
         own.place[r] = first != NULL ? (int)first[r] : r;
     }
-    if (own.patient) {
-        MPI_Iallgatherv(MPI_IN_PLACE, 0, type, items, own.count, own.place, type, MPI_COMM_WORLD,
-                        own.requests);
-        wait_for(1, own.requests);
-    } else { /* 3 % less time of two processes than by requests */
-        MPI_Allgatherv(MPI_IN_PLACE, 0, type, items, own.count, own.place, type, MPI_COMM_WORLD);
-    }
+    MPI_Iallgatherv(MPI_IN_PLACE, 0, type, items, own.count, own.place, type, MPI_COMM_WORLD, own.requests);
+    wait_for(1, own.requests);
     MPI_Type_free(&type);
     own.sent += (double)own.count[ranks->rank] * (double)size * (ranks->count - 1);
-    end_message(&message);
 }
 
 static void exchange(const struct ranks *ranks, size_t size, const void *send, const int64_t *send_first,
                      void *receive, const int64_t *receive_first)
 {
-    struct cost_of_message message = begin_message();
     MPI_Datatype type = type_of(size);
     int requests = 0;
     for (int r = 0; r < ranks->count; r++) {
@@ -126,17 +94,14 @@ static void exchange(const struct ranks *ranks, size_t size, const void *send, c
     }
     MPI_Type_free(&type); /* takes effect when the requests are complete */
     wait_for(requests, own.requests);
-    end_message(&message);
 }
 
 static int64_t most(const struct ranks *ranks, int64_t value)
 {
-    struct cost_of_message message = begin_message();
     int64_t largest = value;
     (void)ranks;
     MPI_Iallreduce(&value, &largest, 1, MPI_INT64_T, MPI_MAX, MPI_COMM_WORLD, own.requests);
     wait_for(1, own.requests);
-    end_message(&message);
     return largest;
 }
 
@@ -202,22 +167,16 @@ void process_end(void)
 
 void process_report(int64_t evaluations)
 {
-    enum { SENT, COMPUTING, WAITING, VALUES };
-    double mine[VALUES] = {own.sent, processor_seconds(CLOCK_PROCESS_CPUTIME_ID) - own.spun, own.waited};
-    double all[VALUES], largest[VALUES];
+    double all, most_sent;
     int count = own.ranks.count;
     if (count == 1) {
         return;
     }
-    MPI_Allreduce(mine, all, VALUES, MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
-    MPI_Allreduce(mine, largest, VALUES, MPI_DOUBLE, MPI_MAX, MPI_COMM_WORLD);
+    MPI_Allreduce(&own.sent, &all, 1, MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
+    MPI_Allreduce(&own.sent, &most_sent, 1, MPI_DOUBLE, MPI_MAX, MPI_COMM_WORLD);
     if (process_speaks()) {
         fprintf(stderr, "processes\t%d\n", count);
         fprintf(stderr, "bytes sent by a process in an evaluation\t%.0f\tmost\t%.0f\n",
-                all[SENT] / count / (double)evaluations, largest[SENT] / (double)evaluations);
-        fprintf(stderr, "processor seconds of a process but for waiting\t%.3f\tmost\t%.3f\n",
-                all[COMPUTING] / count, largest[COMPUTING]);
-        fprintf(stderr, "seconds of sending and waiting\t%.3f\tmost\t%.3f\n", all[WAITING] / count,
-                largest[WAITING]);
+                all / count / (double)evaluations, most_sent / (double)evaluations);
     }
 }
