@@ -195,8 +195,9 @@ static enum status add_gravity(struct model *model, struct error *error)
     bool from_start = input->in_time || model->scene->duration > 0.0;
     const struct scene_curve curve = {.kind = from_start ? CURVE_STEP : CURVE_SMOOTH};
     memcpy(input->gravity, model->scene->gravity, sizeof input->gravity);
-    return assembly_has_gravity(input) ? model_add_curve(model, NULL, &curve, &input->gravity_curve, error)
-                                       : STATUS_OK;
+    return vector_dot(3, input->gravity, input->gravity) > 0.0
+               ? model_add_curve(model, NULL, &curve, &input->gravity_curve, error)
+               : STATUS_OK;
 }
 
 /* input->ITEMs: one for each of scene->SECTIONs, made of it by `add`. */

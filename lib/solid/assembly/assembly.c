@@ -56,14 +56,10 @@ static enum status assembly_junction_cells(const struct assembly *input, int32_t
  */
 static enum status assembly_edge_nodes(const struct assembly *input, bool **at_edge, struct error *error)
 {
-    bool found = false;
     *at_edge = NULL;
     RETURN_IF_ERROR(find_junctions(input, BOUNDARY_JUNCTION_SHARP | BOUNDARY_REENTRANT, input->cells.dim,
                                    at_edge, error));
-    for (int64_t n = 0; n < input->cells.node_count; n++) {
-        found = found || (*at_edge)[n];
-    }
-    if (!found) {
+    if (memchr(*at_edge, true, (size_t)input->cells.node_count) == NULL) {
         free(*at_edge);
         *at_edge = NULL;
     }
@@ -212,7 +208,7 @@ enum status assembly_build(struct assembly *input, struct solid_system *system, 
     RETURN_IF_ERROR(assembly_add_supports(input, system, error));
     RETURN_IF_ERROR(assembly_add_points(input, system, error));
     RETURN_IF_ERROR(assembly_add_contacts(input, system, error));
-    RETURN_IF_ERROR(system_has_friction(system) ? find_floating(&input->cells, system, error) : STATUS_OK);
+    RETURN_IF_ERROR(system->contact_count > 0 ? find_floating(&input->cells, system, error) : STATUS_OK);
     return system_share_penalties(system, error);
 }
 

@@ -138,8 +138,6 @@ MUST_CHECK enum status assembly_add_supports(const struct assembly *input, struc
 enum status condition_fail_at(const struct condition *condition, int64_t row, struct error *error,
                               const char *what);
 
-bool assembly_has_gravity(const struct assembly *input);
-
 /* Whether conditions on facets prescribe boundary averages, and not values at nodes. */
 bool assembly_holds_averages(const struct assembly *input);
 

@@ -40,18 +40,6 @@ static enum status add_row(const struct prescription *p, const struct boundary_a
                                direction, target, p->condition->curve, p->number, averages->node[a], error);
 }
 
-/* Add all rows of one average, whatever directions are prescribed already. */
-static enum status add_average(const struct prescription *p, const struct boundary_averages *averages,
-                               int64_t a, struct error *error)
-{
-    struct demand demand;
-    enum status status = prescription_demand(p, averages, a, false, &demand, error);
-    for (int k = 0; status == STATUS_OK && k < demand.count; k++) {
-        status = add_row(p, averages, a, demand.direction + k * p->input->cells.dim, demand.value[k], error);
-    }
-    return status;
-}
-
 /* Mark in shared[], of an average's group, the components that are prescribed at its node. */
 static void note_shared(const struct prescription *p, int32_t node, bool *shared)
 {
@@ -64,8 +52,9 @@ static void note_shared(const struct prescription *p, int32_t node, bool *shared
     }
 }
 
-/* Add the rows of one average along directions that no earlier condition holds at its node. Where the whole
- * displacement is prescribed, the directions are made orthogonal to those prescribed before. */
+/* Add the rows of one average along directions that no earlier condition holds at its node; penalties along
+ * all directions. Where the whole displacement is prescribed, the directions are made orthogonal to those
+ * prescribed before. */
 static enum status add_rest(const struct prescription *p, const struct boundary_averages *averages, int64_t a,
                             bool *shared, struct error *error)
 {
@@ -73,11 +62,12 @@ static enum status add_rest(const struct prescription *p, const struct boundary_
     int32_t node = averages->node[a];
     struct demand demand;
     double mine[9];
-    bool full = prescription_is_full(p);
+    bool full = !p->penalties && prescription_is_full(p);
     enum status status = prescription_demand(p, averages, a, false, &demand, error);
     for (int k = 0; status == STATUS_OK && k < demand.count; k++) {
         double rest[3], target = demand.value[k], *direction = demand.direction + k * dim;
-        double length = held_rest(p->held, node, full ? count : 0, mine, direction, rest);
+        double length =
+            p->penalties ? 1.0 : held_rest(p->held, node, full ? count : 0, mine, direction, rest);
         if (!(length > HELD_LEAST)) {
             if (shared != NULL) {
                 note_shared(p, node, shared);
@@ -163,7 +153,7 @@ static enum status add_penalties(struct prescription *p, struct error *error)
     RETURN_IF_ERROR(
         assembly_penalty_modulus(p->input, set, constraint_penalty_factor, &p->modulus, &wave, error));
     for (int64_t a = 0; a < points.count; a++) {
-        RETURN_IF_ERROR(add_average(p, &points, a, error));
+        RETURN_IF_ERROR(add_rest(p, &points, a, NULL, error));
     }
     return STATUS_OK;
 }

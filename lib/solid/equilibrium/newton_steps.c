@@ -29,7 +29,7 @@ static const double step_by_width = 0.5;
 
 bool newton_held_by_friction(const struct newton *n)
 {
-    return n->system->floats;
+    return n->system->floats && system_has_friction(n->system);
 }
 
 /* Evaluate u + step; whether no cell collapses on the way, and the residual does not grow by too much. */

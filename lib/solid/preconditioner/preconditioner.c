@@ -6,7 +6,6 @@
 #include "base/processor.h"
 #include "base/vector.h"
 #include "solid/constraint/held_directions.h"
-#include "solid/system/rigid_modes.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -60,9 +59,9 @@ enum status preconditioner_build(struct solid_system *system, bool coarse, struc
                                  struct error *error)
 {
     int64_t cells;
-    *p = (struct preconditioner){.dim = system->dim, .node_count = system->node_count};
+    *p = (struct preconditioner){
+        .dim = system->dim, .node_count = system->node_count, .has_rigid_mode = system->floats};
     RETURN_IF_ERROR(system_constrain(system, NULL, &p->constraint, error));
-    RETURN_IF_ERROR(system_has_rigid_mode(system, &p->has_rigid_mode, error));
     for (int64_t c = 0; c < system->contact_count; c++) {
         p->contact_node_count += contact_nodes(&system->contacts[c])->count;
     }

@@ -37,7 +37,7 @@ struct preconditioner {
     double *body, *contacts, *stiffness_factor;
     /* coarse.count * coarse.count: Z^T D Z with D = `stiffness`, the same in each direction. */
     double *weight;
-    bool has_rigid_mode; /* the conditions leave the body free to move as a whole */
+    bool has_rigid_mode; /* system->floats */
     int64_t contact_node_count;
     /* What A counts in at the contact nodes of all contacts: contact_node_count stiffnesses along the
      * surface's normals, dim times as many for these, and stiffnesses across, of friction (NULL: there is

@@ -34,7 +34,7 @@ struct part {
 struct parts {
     const struct solid_system *system;
     int32_t count;
-    const int32_t *of_node; /* node_count; NULL: all nodes are of part 0 */
+    const int32_t *of_node; /* node_count */
     struct part *part;      /* count */
 };
 
@@ -64,11 +64,6 @@ static void rigid_mode(const struct box *box, int k, const double *X, double mod
     mode[b] = (X[a] - middle(box, a)) / side;
 }
 
-static int32_t part_of(const struct parts *parts, int32_t node)
-{
-    return parts->of_node == NULL ? 0 : parts->of_node[node];
-}
-
 /* matrix += factor v v^T */
 static void add_square(int n, double factor, const double *v, double *matrix)
 {
@@ -82,7 +77,7 @@ static void hold_row(struct parts *parts, const struct constraint_rows *rows, in
 {
     struct average average = constraint_rows_average(rows, r);
     int dim = parts->system->dim, modes = mode_count(dim);
-    struct part *part = &parts->part[part_of(parts, average.idx[0])];
+    struct part *part = &parts->part[parts->of_node[average.idx[0]]];
     double weights = 0.0, mode[3], value[MOST_MODES] = {0.0};
     for (int64_t i = 0; i < average.length; i++) {
         for (int k = 0; k < modes; k++) {
@@ -122,7 +117,7 @@ static enum status measure_curved(struct parts *parts, struct error *error)
     NEW_SCRATCH(double, weight, system->node_count, error);
     for (int64_t f = 0; f < sliding->facet_count; f++) {
         const int32_t *node = sliding->facet[f].node;
-        struct part *part = &parts->part[part_of(parts, node[0])];
+        struct part *part = &parts->part[parts->of_node[node[0]]];
         double area[3], centre[3], mode[3], v[MOST_MODES];
         face_area_vector(dim, system->X, node, area);
         double size = vector_length(dim, area);
@@ -140,8 +135,7 @@ static enum status measure_curved(struct parts *parts, struct error *error)
     }
     for (int64_t n = 0; n < system->node_count; n++) {
         if (weight[n] > 0.0) {
-            add_square(modes, 1.0 / weight[n], sum + n * modes,
-                       parts->part[part_of(parts, (int32_t)n)].correlation);
+            add_square(modes, 1.0 / weight[n], sum + n * modes, parts->part[parts->of_node[n]].correlation);
         }
     }
     return STATUS_OK;
@@ -187,7 +181,7 @@ static enum status parts_find(struct parts *parts, struct error *error)
         parts->part[p].box = box_of(dim, 0, NULL);
     }
     for (int64_t n = 0; n < system->node_count; n++) {
-        box_add(&parts->part[part_of(parts, (int32_t)n)].box, 1, system->X + n * dim);
+        box_add(&parts->part[parts->of_node[n]].box, 1, system->X + n * dim);
     }
     hold_rows(parts);
     RETURN_IF_ERROR(measure_curved(parts, error));
@@ -262,13 +256,5 @@ enum status system_rigid_modes(const struct solid_system *system, int32_t part_c
         }
         split_modes(system->dim, &parts.part[p], &modes[p]);
     }
-    return STATUS_OK;
-}
-
-enum status system_has_rigid_mode(const struct solid_system *system, bool *has, struct error *error)
-{
-    FREED_BY(parts_free) struct parts parts = {.system = system, .count = 1};
-    RETURN_IF_ERROR(parts_find(&parts, error));
-    *has = parts.part[0].count > 0;
     return STATUS_OK;
 }

@@ -19,7 +19,3 @@ struct rigid_modes {
 MUST_CHECK enum status system_rigid_modes(const struct solid_system *system, int32_t part_count,
                                           const int32_t *part, struct rigid_modes *modes,
                                           struct error *error);
-
-/* *has: whether the nodes, as one body, have a free rigid-body mode. STATUS_SYSTEM: memory. */
-MUST_CHECK enum status system_has_rigid_mode(const struct solid_system *system, bool *has,
-                                             struct error *error);

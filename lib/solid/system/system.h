@@ -66,7 +66,7 @@ struct solid_system {
     struct boundary_averages *contact_points, *contact_averages; /* contact_count: points of the contacts, and
                                                                 their nodal averages (may be empty) */
     int64_t contact_count;
-    bool floats; /* a contact has friction, and the conditions leave a body free to move as a whole */
+    bool floats; /* there are contacts, and the conditions leave a body free to move as a whole */
     struct constraint_rows rows;
     struct sliding sliding;             /* those of the rows along the normals of curved sides */
     const struct condition *conditions; /* of the rows, for messages; the caller's; NULL: not known */
