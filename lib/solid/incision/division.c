@@ -9,15 +9,43 @@
 
 enum { MOST_EDGES = 6, MOST_PARTS = 1 << MOST_EDGES }; /* of a simplex */
 
-static enum status copy_array(void *pointer, const void *from, int64_t count, size_t size,
-                              struct error *error)
+/* Have room for so many nodes, cells and facets, and more, so that they may grow one by one. */
+static enum status reserve(struct division *body, int64_t nodes, int64_t cells, int64_t facets,
+                           struct error *error)
 {
-    void *copy = array_grow(NULL, count > 0 ? count : 1, size);
-    if (copy == NULL) {
-        return fail_memory(error, "cells");
+    int64_t dim = body->dim, room;
+    if (nodes > INT32_MAX) {
+        return fail(error, STATUS_INPUT, "the cut makes more than %d nodes", INT32_MAX);
     }
-    memcpy(copy, from, (size_t)count * size);
-    memcpy(pointer, &copy, sizeof copy);
+    if (nodes > body->node_room) {
+        room = nodes + nodes / 4;
+        RETURN_IF_ERROR(RESIZE_ARRAY(&body->x, room * dim, error));
+        RETURN_IF_ERROR(RESIZE_ARRAY(&body->at, room * dim, error));
+        RETURN_IF_ERROR(RESIZE_ARRAY(&body->parent, room * 2, error));
+        RETURN_IF_ERROR(RESIZE_ARRAY(&body->sets, room, error));
+        body->node_room = room;
+    }
+    if (cells > body->cell_room) {
+        room = cells + cells / 4;
+        RETURN_IF_ERROR(RESIZE_ARRAY(&body->node, room * (dim + 1), error));
+        RETURN_IF_ERROR(RESIZE_ARRAY(&body->of_cell, room, error));
+        body->cell_room = room;
+    }
+    if (facets > body->facet_room) {
+        room = facets + facets / 4;
+        RETURN_IF_ERROR(RESIZE_ARRAY(&body->facet, room * dim, error));
+        RETURN_IF_ERROR(RESIZE_ARRAY(&body->group, room, error));
+        body->facet_room = room;
+    }
+    return STATUS_OK;
+}
+
+enum status division_add_facet(struct division *body, const int32_t *facet, int32_t group,
+                               struct error *error)
+{
+    RETURN_IF_ERROR(reserve(body, 0, 0, body->facet_count + 1, error));
+    memcpy(body->facet + body->facet_count * body->dim, facet, (size_t)body->dim * sizeof *facet);
+    body->group[body->facet_count++] = group;
     return STATUS_OK;
 }
 
@@ -29,20 +57,18 @@ enum status division_begin(const struct cells *cells, const double *at, const in
     int64_t nodes = cells->node_count;
     *body = (struct division){.dim = dim,
                               .node_count = nodes,
-                              .node_room = nodes,
                               .cell_count = cells->count,
-                              .cell_room = cells->count,
                               .facet_count = facet_count,
-                              .facet_room = facet_count,
                               .region = region};
-    RETURN_IF_ERROR(copy_array(&body->x, cells->x, nodes * dim, sizeof(double), error));
-    RETURN_IF_ERROR(copy_array(&body->at, at != NULL ? at : cells->x, nodes * dim, sizeof(double), error));
-    RETURN_IF_ERROR(copy_array(&body->node, cells->node, cells->count * (dim + 1), sizeof(int32_t), error));
-    RETURN_IF_ERROR(copy_array(&body->facet, facet, facet_count * dim, sizeof(int32_t), error));
-    RETURN_IF_ERROR(copy_array(&body->group, group, facet_count, sizeof(int32_t), error));
-    RETURN_IF_ERROR(RESIZE_ARRAY(&body->of_cell, cells->count, error));
-    RETURN_IF_ERROR(RESIZE_ARRAY(&body->parent, nodes * 2, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&body->sets, nodes, error));
+    RETURN_IF_ERROR(reserve(body, nodes, cells->count, facet_count, error));
+    memcpy(body->x, cells->x, (size_t)(nodes * dim) * sizeof *body->x);
+    memcpy(body->at, at != NULL ? at : cells->x, (size_t)(nodes * dim) * sizeof *body->at);
+    memcpy(body->node, cells->node, (size_t)(cells->count * (dim + 1)) * sizeof *body->node);
+    if (facet_count > 0) {
+        memcpy(body->facet, facet, (size_t)(facet_count * dim) * sizeof *facet);
+        memcpy(body->group, group, (size_t)facet_count * sizeof *group);
+    }
+    memset(body->sets, 0, (size_t)nodes * sizeof *body->sets);
     for (int64_t c = 0; c < cells->count; c++) {
         body->of_cell[c] = (int32_t)c;
     }
@@ -66,60 +92,12 @@ struct cells division_cells(const struct division *body)
 
 /* ---- growing ---- */
 
-static int64_t more_room(int64_t room, int64_t needed)
-{
-    return needed <= room ? room : needed + needed / 4;
-}
-
-static enum status nodes_room(struct division *body, int64_t needed, struct error *error)
-{
-    int64_t room = more_room(body->node_room, needed);
-    if (needed > INT32_MAX) {
-        return fail(error, STATUS_INPUT, "the cut makes more than %d nodes", INT32_MAX);
-    }
-    if (room == body->node_room) {
-        return STATUS_OK;
-    }
-    RETURN_IF_ERROR(RESIZE_ARRAY(&body->x, room * body->dim, error));
-    RETURN_IF_ERROR(RESIZE_ARRAY(&body->at, room * body->dim, error));
-    RETURN_IF_ERROR(RESIZE_ARRAY(&body->parent, room * 2, error));
-    RETURN_IF_ERROR(RESIZE_ARRAY(&body->sets, room, error));
-    body->node_room = room;
-    return STATUS_OK;
-}
-
-static enum status cells_room(struct division *body, int64_t needed, struct error *error)
-{
-    int64_t room = more_room(body->cell_room, needed);
-    if (room == body->cell_room) {
-        return STATUS_OK;
-    }
-    RETURN_IF_ERROR(RESIZE_ARRAY(&body->node, room * (body->dim + 1), error));
-    RETURN_IF_ERROR(RESIZE_ARRAY(&body->of_cell, room, error));
-    body->cell_room = room;
-    return STATUS_OK;
-}
-
-enum status division_add_facet(struct division *body, const int32_t *facet, int32_t group,
-                               struct error *error)
-{
-    int64_t room = more_room(body->facet_room, body->facet_count + 1);
-    if (room != body->facet_room) {
-        RETURN_IF_ERROR(RESIZE_ARRAY(&body->facet, room * body->dim, error));
-        RETURN_IF_ERROR(RESIZE_ARRAY(&body->group, room, error));
-        body->facet_room = room;
-    }
-    memcpy(body->facet + body->facet_count * body->dim, facet, (size_t)body->dim * sizeof *facet);
-    body->group[body->facet_count++] = group;
-    return STATUS_OK;
-}
-
 /* Append the node at a + share (b - a); a copy of a node is one between it and itself. */
 static enum status add_node(struct division *body, int32_t a, int32_t b, double share, struct error *error)
 {
     int dim = body->dim;
     int64_t n = body->node_count;
-    RETURN_IF_ERROR(nodes_room(body, n + 1, error));
+    RETURN_IF_ERROR(reserve(body, n + 1, 0, 0, error));
     vector_between(dim, body->x + (int64_t)a * dim, body->x + (int64_t)b * dim, share, body->x + n * dim);
     vector_between(dim, body->at + (int64_t)a * dim, body->at + (int64_t)b * dim, share, body->at + n * dim);
     body->parent[2 * n] = a;
@@ -231,7 +209,7 @@ static enum status split_cells(struct division *body, const struct splits *split
     int32_t part[MOST_PARTS][4];
     for (int64_t c = 0, before = body->cell_count; c < before; c++) {
         int parts = divide(splits, corners, body->node + c * corners, part);
-        RETURN_IF_ERROR(cells_room(body, body->cell_count + parts, error));
+        RETURN_IF_ERROR(reserve(body, 0, body->cell_count + parts, 0, error));
         for (int p = 0; p < parts; p++) {
             int64_t place = p == 0 ? c : body->cell_count++;
             memcpy(body->node + place * corners, part[p], (size_t)corners * sizeof(int32_t));
@@ -267,7 +245,6 @@ enum status division_split(struct division *body, int64_t count, const struct sp
     RETURN_IF_ERROR(rank_splits(body, &splits, error));
     RETURN_IF_ERROR(split_cells(body, &splits, error));
     RETURN_IF_ERROR(split_facets(body, &splits, error));
-    RETURN_IF_ERROR(nodes_room(body, body->node_count + count, error));
     for (int64_t i = 0; i < count; i++) {
         RETURN_IF_ERROR(add_node(body, split[i].node[0], split[i].node[1], split[i].share, error));
     }

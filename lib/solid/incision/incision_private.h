@@ -59,7 +59,3 @@ bool cut_root(const struct cut *cut, enum level level, const int32_t node[2], do
 /* Move nodes near the zero of the level onto it. */
 MUST_CHECK enum status cut_snap(struct cut *cut, enum level level, const struct crossings *crossings,
                                 struct error *error);
-
-/* Open the faces within the border. */
-MUST_CHECK enum status cut_open(struct cut *cut, int32_t front, int32_t back, int64_t *opened,
-                                struct error *error);

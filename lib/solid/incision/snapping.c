@@ -92,12 +92,6 @@ static enum status surfaces_build(const struct cut *cut, struct surfaces *surfac
                         &surfaces->idx, error);
 }
 
-static bool is_free(const struct snapping *snapping, int32_t node)
-{
-    const struct surfaces *surfaces = &snapping->surfaces;
-    return surfaces->ptr[node] == surfaces->ptr[node + 1] && snapping->cut->body->sets[node] == 0;
-}
-
 static bool face_has(const struct snapping *snapping, int32_t face, int32_t node)
 {
     int dim = snapping->cut->body->dim;
@@ -171,41 +165,6 @@ static bool move_node(const struct snapping *snapping, int32_t node, const doubl
     return good;
 }
 
-/* Move a node to the place `at`, which lies in one of its cells. */
-static bool move_within(const struct snapping *snapping, int32_t node, const double *at)
-{
-    const struct division *body = snapping->cut->body;
-    struct cells cells = division_cells(body);
-    int dim = body->dim;
-    cells.x = body->at;
-    for (int64_t i = snapping->cell_ptr[node]; i < snapping->cell_ptr[node + 1]; i++) {
-        int64_t cell = snapping->cell_idx[i];
-        double share[4], x[3] = {0.0}, least = 0.0;
-        cell_barycentric(&cells, cell, at, share);
-        for (int k = 0; k <= dim; k++) {
-            least = fmin(least, share[k]);
-            add_scaled(dim, share[k], body->x + (int64_t)body->node[cell * (dim + 1) + k] * dim, x);
-        }
-        if (least >= -COARSE_ROUND_OFF) {
-            return move_node(snapping, node, x, at);
-        }
-    }
-    return false;
-}
-
-/* Move a free node to the nearest place on the level. */
-static bool move_to_foot(const struct snapping *snapping, int32_t node)
-{
-    const struct cut *cut = snapping->cut;
-    struct sheet_place place;
-    if (!is_free(snapping, node) || !sheet_at(cut->sheet, cut->body->at + (int64_t)node * cut->body->dim,
-                                              2.0 * cut->longest[node], &place)) {
-        return false;
-    }
-    (void)sheet_extent(cut->sheet, &place);
-    return move_within(snapping, node, snapping->level == LEVEL_HEIGHT ? place.foot : place.border);
-}
-
 static bool move_along(const struct snapping *snapping, int32_t node, const struct split *edge)
 {
     const struct division *body = snapping->cut->body;
@@ -243,7 +202,7 @@ static enum status snap_node(const struct snapping *snapping, int32_t node, int6
         }
     }
     qsort(way, (size_t)near, sizeof *way, compare_placed);
-    bool moved = near > 0 && move_to_foot(snapping, node);
+    bool moved = false;
     for (int64_t i = 0; i < near && !moved; i++) {
         moved = move_along(snapping, node, &edge[way[i].item]);
     }
