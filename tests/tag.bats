@@ -107,12 +107,12 @@ END
     [[ "$(report nodes in_cube)" == *"box 0.02 0 0 to 0.025 0.005 0.005 m" ]]
 }
 
-@test "regions part the cells; renamed, replaced and deleted groups" {
+@test "regions part the cells; replaced and deleted groups" {
     bare_block
     tag -v -r lump=ball:0.05,0.05,0.1,0.04 -f a=low:z,10% -f b=high:z,10% bare.mts 2> said > g.mts
     [[ "$(report region body)" == "1308, volume 0.001744 m3"* ]]
     [[ "$(report region lump)" == "192, volume 0.000256 m3"* ]]
-    tag -m a=floor -d b g.mts > h.mts
+    tag -f floor=a -d a -d b g.mts > h.mts
     mts list h.mts | has 'facets.set.*names=floor$'
     mts print cells.region g.mts | cmp - <(mts print cells.region h.mts)
     mts print facets h.mts | cmp - <(mts print facets g.mts | head -n "$(mts print facets h.mts | wc -l)")
@@ -125,8 +125,8 @@ END
     refused 2 "104 of 1500 cells belong to no region" tag --replace -r lump=ball:0.05,0.05,0.1,0.03 g.mts
     refused 2 "its cells would belong to no region" tag -d lump g.mts
     tag -r a=high:x,10% g.mts > twice.mts 2> /dev/null
-    refused 2 "both facets and region have that name: write facets:a or region:a" tag -m a=c twice.mts
-    tag -m region:a=c twice.mts | mts list | has 'cells.region.*names=body,lump,c$'
+    refused 2 "both facets and region have that name: write facets:a or region:a" tag -d a twice.mts
+    tag -r c=region:a twice.mts 2> said | mts list | has 'cells.region.*names=body,lump,c$'
     tag -d a -d b g.mts | mts list > list
     run -1 grep -q facets list
 }
@@ -152,7 +152,7 @@ END
     refused 2 "no blanks, commas, quotes" tag -f 'a b=all' bare.mts
     refused 2 "is a word of the expressions" tag -f or=all bare.mts
     refused 2 "lacks its '='" tag -f all bare.mts
-    refused 2 "no group of that name" tag -m a=b bare.mts
+    refused 2 "no group of that name" tag -d a bare.mts
     refused 2 "nothing to do" tag bare.mts
     refused 2 "-u: 'inch' is none of m, cm, mm, um, nor a number of metres" tag -u inch -f a=all bare.mts
     cloud -d 3 -k halton -n 50 --box 0,1,0,1,0,1 > points.mts

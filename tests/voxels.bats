@@ -236,7 +236,7 @@ z = (image.affine @ np.vstack([np.indices(image.shape).reshape(3, -1), np.ones(i
 nib.save(nib.Nifti1Image(((np.asarray(image.dataobj) > 0) & (z > 14)).astype(np.uint8), None, image.header), "mask.nii.gz")
 END
     voxels -h 5mm sphere.nii.gz | tag -f 'cap=ball:0,0,0.024,0.014' | mts list | has 'names=label_1|outside,cap'
-    voxels -h 5mm sphere.nii.gz 9=mask.nii.gz | tag -r label_1=all --replace -m 'label_9|outside=part' > body.mts 2> said
+    voxels -h 5mm sphere.nii.gz 9=mask.nii.gz | tag -r label_1=all --replace -f 'part=label_9|outside' -d 'label_9|outside' > body.mts 2> said
     [ -z "$(mts check body.mts)" ]
     [ "$(names cells.region body.mts)" = label_1 ]
     paste <(mts print facets.set body.mts) <(mts print facets body.mts) | awk '

@@ -2,7 +2,7 @@ static const char usage[] =
     "tag - names for parts of the boundary, node sets and regions\n"
     "\n"
     "usage: tag [-u UNIT] [-f NAME=EXPRESSION]... [-n NAME=EXPRESSION]... [-r NAME=EXPRESSION]...\n"
-    "              [-m OLD=NEW]... [-d NAME]... [--replace] [-v] [-t] [-o FILE] [FILE]\n"
+    "              [-d NAME]... [--replace] [-v] [-t] [-o FILE] [FILE]\n"
     "\n"
     "Reads a stream with nodes.x and cells (see nodes) and adds named groups, chosen by place:\n"
     "facets of the boundary, which the conditions of a scene name; sets of nodes; and regions, which have\n"
@@ -45,8 +45,7 @@ static const char usage[] =
     "  -f, --facets NAME=EXPRESSION ...  a group of facets of the boundary\n"
     "  -n, --nodes NAME=EXPRESSION ...   a set of nodes\n"
     "  -r, --region NAME=EXPRESSION ...  a region of cells\n"
-    "  -m, --rename OLD=NEW ...  rename a group, if need be facets:OLD=NEW, ...\n"
-    "  -d, --delete NAME ...     delete a group of facets or nodes\n"
+    "  -d, --delete NAME ...     delete a group of facets or nodes, if need be facets:NAME, nodes:NAME\n"
     "      --replace             -f, -n and -r replace groups that exist\n"
     "  -u, --unit UNIT         unit of lengths in expressions and their files: m (default), cm, mm, um,\n"
     "                          or a number of metres\n"
@@ -80,20 +79,6 @@ struct request {
     bool replace;
 };
 
-/* *name: the part of the value before '=', to be freed; *behind: the part after it. */
-static enum status take_name(const struct request *request, char **name, const char **behind,
-                             struct error *error)
-{
-    const char *value = request->use->value;
-    size_t length = strcspn(value, "=");
-    if (value[length] == '\0') {
-        return fail(error, STATUS_INPUT, "lacks its '=': see -h");
-    }
-    *behind = value + length + 1;
-    *name = strndup(value, length);
-    return *name != NULL ? STATUS_OK : fail_memory(error, "a name");
-}
-
 /* Facets, nodes, cells. */
 static const char *const plurals[GROUP_KINDS] = {"facets", "nodes", "cells"};
 
@@ -101,10 +86,15 @@ static enum status make_group(const struct request *request, enum group_kind kin
 {
     struct group_body *body = request->body;
     const struct items *items = &body->items[kind];
-    const char *expression = NULL;
-    SCRATCH char *name = NULL;
+    const char *expression = strchr(request->use->value, '=');
     int64_t count = 0;
-    RETURN_IF_ERROR(take_name(request, &name, &expression, error));
+    if (expression == NULL) {
+        return fail(error, STATUS_INPUT, "lacks its '=': see -h");
+    }
+    SCRATCH char *name = strndup(request->use->value, (size_t)(expression - request->use->value));
+    if (name == NULL) {
+        return fail_memory(error, "a name");
+    }
     RETURN_IF_ERROR(group_check_name(name, error));
     if (body->cells.count == 0 && kind != GROUP_NODES) {
         return fail(error, STATUS_INPUT, "the stream has no cells, only nodes can be grouped (-n)");
@@ -113,7 +103,7 @@ static enum status make_group(const struct request *request, enum group_kind kin
         return fail(error, STATUS_INPUT, "there is one of that name already: --replace replaces it");
     }
     NEW_SCRATCH(bool, chosen, items->count, error);
-    RETURN_IF_ERROR(group_select(body, kind, expression, request->unit, chosen, error));
+    RETURN_IF_ERROR(group_select(body, kind, expression + 1, request->unit, chosen, error));
     for (int64_t i = 0; i < items->count; i++) {
         count += chosen[i];
     }
@@ -148,23 +138,6 @@ static enum status find_any(const struct request *request, const char *name, enu
     return *place >= 0 ? STATUS_OK : fail(error, STATUS_INPUT, "no group of that name: -v lists them");
 }
 
-static enum status rename_group(const struct request *request, struct error *error)
-{
-    enum group_kind kind = GROUP_FACETS;
-    int64_t place;
-    const char *after = NULL;
-    SCRATCH char *before = NULL;
-    RETURN_IF_ERROR(take_name(request, &before, &after, error));
-    RETURN_IF_ERROR(find_any(request, before, &kind, &place, error));
-    RETURN_IF_ERROR(group_check_name(after, error));
-    struct group_list *list = &request->body->groups[kind];
-    if (names_find(&list->names, after) >= 0) {
-        return fail(error, STATUS_INPUT, "there is one of the new name already");
-    }
-    list->changed = true;
-    return names_change(&list->names, place, after, error);
-}
-
 static enum status delete_group(const struct request *request, struct error *error)
 {
     enum group_kind kind = GROUP_FACETS;
@@ -186,8 +159,6 @@ static enum status carry_out(const struct request *request, struct error *error)
         return make_group(request, GROUP_NODES, error);
     case 'r':
         return make_group(request, GROUP_REGION, error);
-    case 'm':
-        return rename_group(request, error);
     default:
         return delete_group(request, error);
     }
@@ -280,7 +251,7 @@ static void finish(const struct tool *tool, struct group_body *body, struct stre
     }
 }
 
-static const char *const changes[] = {"facets", "nodes", "region", "rename", "delete", NULL};
+static const char *const changes[] = {"facets", "nodes", "region", "delete", NULL};
 
 int main(int argc, char *argv[])
 {
@@ -289,7 +260,7 @@ int main(int argc, char *argv[])
     FREED_BY(group_body_free) struct group_body body = {0};
     tool_begin(&tool, usage, 0, 1, argc, argv);
     if (tool_first_given(&tool, changes) == NULL && !tool_given(&tool, "verbose")) {
-        tool_fail(&tool, STATUS_INPUT, "nothing to do: give -f, -n, -r, -m, -d or -v (see -h)");
+        tool_fail(&tool, STATUS_INPUT, "nothing to do: give -f, -n, -r, -d or -v (see -h)");
     }
     double unit = tool_length_unit(&tool, "unit", 1);
     tool_read(&tool, tool.operands[0], &stream);

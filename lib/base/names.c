@@ -42,13 +42,12 @@ enum status names_split(struct names *names, const char *list, struct error *err
     return STATUS_OK;
 }
 
-enum status names_change(struct names *names, int64_t index, const char *name, struct error *error)
+enum status names_remove(struct names *names, int64_t index, struct error *error)
 {
     FREED_BY(names_free) struct names old = *names;
     *names = (struct names){0};
     for (int64_t i = 0; i < old.count; i++) {
-        const char *kept = i == index ? name : old.name[i];
-        RETURN_IF_ERROR(kept != NULL ? names_add(names, kept, error) : STATUS_OK);
+        RETURN_IF_ERROR(i != index ? names_add(names, old.name[i], error) : STATUS_OK);
     }
     return STATUS_OK;
 }

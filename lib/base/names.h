@@ -21,9 +21,7 @@ MUST_CHECK enum status names_print(struct names *names, struct error *error, con
 MUST_CHECK enum status names_split(struct names *names, const char *list, struct error *error);
 void names_free(struct names *names);
 
-/* Replace a name; NULL: remove it. */
-MUST_CHECK enum status names_change(struct names *names, int64_t index, const char *name,
-                                    struct error *error);
+MUST_CHECK enum status names_remove(struct names *names, int64_t index, struct error *error);
 
 /* Index of `name`, or -1. */
 int64_t names_find(const struct names *names, const char *name);

@@ -23,7 +23,7 @@ static enum status find_group(struct cut_body *whole, const char *ending, int32_
     struct names *names = &whole->facets.names;
     RETURN_IF_ERROR(names_print(names, error, "%s%s", whole->options->name, ending));
     *group = (int32_t)names_find(names, names->name[names->count - 1]);
-    return *group < names->count - 1 ? names_change(names, names->count - 1, NULL, error) : STATUS_OK;
+    return *group < names->count - 1 ? names_remove(names, names->count - 1, error) : STATUS_OK;
 }
 
 static enum status read_body(const struct stream *stream, struct cut_body *whole, struct error *error)

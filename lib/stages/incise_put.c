@@ -101,7 +101,7 @@ static enum status put_sets(struct cut_body *whole, const bool *edge, const int3
         sets++;
     }
     if (own >= 0) {
-        RETURN_IF_ERROR(names_change(names, own, NULL, error));
+        RETURN_IF_ERROR(names_remove(names, own, error));
     }
     if (any) {
         RETURN_IF_ERROR(names_print(names, error, "%s|edge", whole->options->name));
@@ -126,7 +126,7 @@ static enum status put_regions(struct cut_body *whole, struct stream *stream, st
         of_cell[c] = own - (region >= 0 && own > region);
     }
     if (region >= 0) {
-        RETURN_IF_ERROR(names_change(names, region, NULL, error));
+        RETURN_IF_ERROR(names_remove(names, region, error));
     }
     return stream_put_groups(stream, GROUP_REGION, names, body->cell_count, NULL, &of_cell, error);
 }
@@ -143,7 +143,7 @@ static enum status drop_empty_groups(struct cut_body *whole, struct error *error
         for (int64_t f = 0; f < body->facet_count && !any; f++) {
             body->group[f] -= body->group[f] > g;
         }
-        RETURN_IF_ERROR(any ? STATUS_OK : names_change(&whole->facets.names, g, NULL, error));
+        RETURN_IF_ERROR(any ? STATUS_OK : names_remove(&whole->facets.names, g, error));
     }
     return STATUS_OK;
 }

@@ -147,7 +147,7 @@ enum status group_remove(struct group_list *list, int64_t index, struct error *e
     for (int64_t i = 0; i < list->count; i++) {
         list->member[i].group -= list->member[i].group > index;
     }
-    return names_change(&list->names, index, NULL, error);
+    return names_remove(&list->names, index, error);
 }
 
 /* ---- writing ---- */
