@@ -175,7 +175,7 @@ one_line() {
     for n in 6 7; do cloud -d 2 -k regular -n $n --box 0,0.1,0,0.1 | shapefn > $n.mts 2> note; done
     pressed_block > block.scene
     run -2 --separate-stderr mpirun --quiet --oversubscribe -n 1 mtled-mpi block.scene 6.mts : -n 1 mtled-mpi block.scene 7.mts
-    [ "$stderr" = "mtled: the processes do not read the same: give all the same scene, tables, stream and options" ]
+    [ "$stderr" = "mtled: the processes do not read the same: give all the same scene, tables, stream and options, and processors of one kind" ]
 }
 
 @test "a process that is killed ends the run; it goes on from the last checkpoint, by any number of processes, to the same bytes" {

@@ -295,7 +295,7 @@ near() {
     refused 2 'block.scene:11: [displacement bottom]: no named facets: give the mesh physical groups, or run tag' mtled block.scene bare.mts
     with 's/^components = 0, -0.005$/&\ncurve = ramp/'
     refused 2 'edited.scene:15: [displacement top]: curve: not smooth, linear or step, and as a file: ' mtled edited.scene square.mts
-    refused 2 'square.mts: a stream, not a scene: mtled SCENE [FILE]' mtled square.mts block.scene
+    refused 2 'a stream, not a scene? mtled SCENE [FILE]' mtled square.mts block.scene
     with 's/^analysis.*/&\ngravity = 0 -9.81/'
     refused 2 'separate components by commas' mtled edited.scene square.mts
     with 's/^components = 0, -0.005$/components = 0, -10/'

@@ -124,8 +124,7 @@ assert a == b and a[0].strip() == "\u00e9\U0001f600, \"a\\" and len(a[0]) == 69,
     cloud_of 2
     random 400 2 '.001 + .0005 * normal(), -.002 + .0005 * normal(), .0005' > noisy.tsv
     { head_of 2; printf '[displacement measured]\npoints = noisy.tsv\nunit = m\n'; } > run.scene
-    mtled -v run.scene block.mts > u.dat 2> said
-    grep -P '^springs of measured\t800 components, off by 0.0004[0-9]* m \(root mean square\)$' said
+    mtled run.scene block.mts > u.dat
     mean=$(mts print u u.dat | awk '{ a += $1 - .001; b += $2 + .002 } END { print sqrt(a^2 + b^2) / NR }')
     below "$mean" 1e-4
     rms=$(mts print u u.dat | awk '{ s += ($1 - .001)^2 + ($2 + .002)^2 } END { print sqrt(s / NR / 2) }')

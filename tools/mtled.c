@@ -79,7 +79,6 @@ static const char usage[] =
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 /* A number that mpirun gives each process in the environment, by Open MPI or by others; -1: none. */
@@ -125,23 +124,6 @@ static void check_checkpoint(const struct tool *tool)
     }
 }
 
-/* Exit if the operands are in the wrong order. */
-static void check_scene(const struct tool *tool)
-{
-    char begin[6] = "";
-    struct stat status; /* a pipe would lose what is read here */
-    bool regular = stat(tool->operands[0], &status) == 0 && S_ISREG(status.st_mode);
-    FILE *file = regular ? fopen(tool->operands[0], "rb") : NULL;
-    bool is_stream = file != NULL && fread(begin, 1, sizeof begin, file) == sizeof begin &&
-                     memcmp(begin, "# mts ", sizeof begin) == 0;
-    if (file != NULL) {
-        (void)fclose(file);
-    }
-    if (is_stream) {
-        tool_fail(tool, STATUS_INPUT, "%s: a stream, not a scene: mtled SCENE [FILE]", tool->operands[0]);
-    }
-}
-
 /* Check options before any input is read; returns the time between checkpoints, s. */
 static double parse(struct tool *tool)
 {
@@ -150,7 +132,6 @@ static double parse(struct tool *tool)
     tool_leave_out(tool, "checkpoint");
     tool_leave_out(tool, "every");
     check_checkpoint(tool);
-    check_scene(tool);
     if (process_ranks() != NULL && (input == NULL || strcmp(input, "-") == 0)) {
         tool_fail(tool, STATUS_INPUT,
                   "several processes cannot share standard input: name the stream's file");
@@ -181,16 +162,6 @@ static void prepare(struct run *run)
     stream_give_back(run->stream);
 }
 
-static void compute(struct run *run)
-{
-    if (run->scene->analysis == SCENE_DYNAMIC) {
-        run_dynamic(run);
-    } else {
-        run_quasi_static(run);
-    }
-    run_checkpoint_end();
-}
-
 /* Write the results; with -v report the time. */
 static void write_results(struct run *run)
 {
@@ -210,6 +181,7 @@ static void write_results(struct run *run)
 int main(int argc, char *argv[])
 {
     struct tool tool;
+    struct error error;
     FREED_BY(stream_free) struct stream stream = {0};
     FREED_BY(scene_free) struct scene scene = {0};
     FREED_BY(model_free) struct model model = {0};
@@ -227,7 +199,11 @@ int main(int argc, char *argv[])
         .checkpoint = {.file = tool_value(&tool, "checkpoint"), .interval = parse(&tool)},
         .display = {.shown = !tool_given(&tool, "quiet") && process_speaks() && isatty(STDERR_FILENO)}};
     double started = clock_seconds();
-    TOOL_TRY(&tool, scene_read(tool.operands[0], &scene, &error));
+    enum status status = scene_read(tool.operands[0], &scene, &error);
+    if (status != STATUS_OK) {
+        tool_fail(&tool, status, "%s%s", error.text,
+                  text_ends(tool.operands[0], ".mts") ? ": a stream, not a scene? mtled SCENE [FILE]" : "");
+    }
     tool_read(&tool, tool.operands[1], &stream);
     sections_remove(&stream, MADE_WITH_RESULTS, MADE_WITH_RESULTS); /* earlier ones */
     run_frames_check(&run);
@@ -236,7 +212,7 @@ int main(int argc, char *argv[])
     run_start_read(&run);
     run.display.started = clock_seconds();
     prepare(&run);
-    compute(&run);
+    run_solve(&run);
     write_results(&run);
     run_folds_free(&run);
     run_frames_free(&run);

@@ -47,8 +47,9 @@ void run_fail(struct run *run, enum status status, const char *format, ...)
         run_folds_describe(run, folds, sizeof folds);
     }
     /* fail() makes one line of it, whatever the names in it contain. */
-    fail(&reason, status, "%s%s%s%s%s", status == STATUS_VERDICT ? run->scene->path : "",
-         status == STATUS_VERDICT ? ": " : "", text, folds[0] != '\0' ? "; " : "", folds);
+    bool verdict = status == STATUS_VERDICT;
+    fail(&reason, status, "%s%s%s%s%s%s", verdict ? run->scene->path : "", verdict ? ": " : "",
+         verdict ? run->at : "", text, folds[0] != '\0' ? "; " : "", folds);
     tool_note(run->tool, "%s", reason.text);
     (void)process_fails_alone(); /* the others wait while the first one writes */
     run_frames_stop(run, reason.text);

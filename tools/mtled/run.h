@@ -87,8 +87,8 @@ struct run {
     const char *start_file; /* result from whose field the run starts; NULL: none */
     struct side start;      /* that result */
     double *u;              /* parameters, node_count * dim, m */
-    double error;           /* quasi-static: the estimated error of u, m */
     double last_good;       /* the time of the state u, as in struct progress; negative: none */
+    char at[64];            /* how far the run came, with a colon, for verdicts; or "" */
     int64_t evaluations;    /* of forces */
     double read_seconds, prepare_seconds, solve_seconds, write_seconds;
 };
@@ -113,8 +113,9 @@ void run_start(struct run *run);
  * the modes that only contacts prevent. */
 void run_check_rigid_modes(struct run *run);
 
-/* Quasi-static: relax to the full load. Exits with a verdict if it does not converge. */
-void run_quasi_static(struct run *run);
+/* Quasi-static: solve for the full load. Dynamic: step to the end time; add the section energy on request.
+ * Exits with a verdict if this fails. */
+void run_solve(struct run *run);
 
 /* Notes displacements, and motions of rigid surfaces, far larger than the body; exits for impossible ones. */
 void run_contacts_begin(const struct run *run);
@@ -135,9 +136,6 @@ void run_contacts_touch(const struct run *run);
 /* For the final state: notes a curved side whose displacement is prescribed along its normal, and that slides
  * so far that it leaves its surface. */
 void run_sliding_judge(const struct run *run);
-
-/* Dynamic: step to the end time. Exits with a verdict if this fails; adds the section energy on request. */
-void run_dynamic(struct run *run);
 
 /* A frame_function; the context is the struct run: writes the sections u.frame.NUMBER and
  * parameters.frame.NUMBER; of a state of equilibrium, run->u, at which the system was evaluated last, all
@@ -172,9 +170,6 @@ bool run_is_of_frames(const char *name);
 
 /* Allocate zeros; exits if there is no memory. */
 double *run_new_values(const struct run *run, int64_t count);
-
-/* Part of a verbose report: the distance of the field from the measured displacements of springs. */
-void run_report_springs(const struct run *run);
 
 /* End of a verbose report: the time of each part of the computation, s, and its share. */
 void run_report_cost(const struct run *run);

@@ -66,15 +66,11 @@ static void compare_processes(const struct run *run)
     for (const char *letter = processor_best_set(); *letter != '\0'; letter++) {
         set = 256 * set + *letter;
     }
-    bool same[] = {agree(checkpoint->identity.scene), agree(checkpoint->identity.input),
-                   agree(checkpoint->file != NULL), agree(set)};
-    if (!same[0] || !same[1] || !same[2]) {
+    if (!agree(checkpoint->identity.scene) || !agree(checkpoint->identity.input) ||
+        !agree(checkpoint->file != NULL) || !agree(set)) {
         tool_fail(run->tool, STATUS_INPUT,
-                  "the processes do not read the same: give all the same scene, tables, stream and options");
-    }
-    if (!same[3]) {
-        tool_fail(run->tool, STATUS_INPUT,
-                  "the processes run on processors with different instructions: take machines of one kind");
+                  "the processes do not read the same: give all the same scene, tables, stream and options, "
+                  "and processors of one kind");
     }
 }
 
@@ -158,16 +154,6 @@ static void put_view(struct run *run, const struct progress *progress, struct st
     tool_put(run->tool, stream, "u.last", TYPE_F8, nodes, dim, "unit=m", field);
 }
 
-static void remove_part(const char *file)
-{
-    SCRATCH char *part = NULL;
-    if (asprintf(&part, "%s.part", file) < 0) {
-        part = NULL;
-    } else {
-        unlink(part);
-    }
-}
-
 /* Replace the file as a whole, by way of FILE.part: whenever the program or the machine stops, it is
  * complete. */
 static enum status write_now(struct run *run, const struct progress *progress, struct error *error)
@@ -187,7 +173,8 @@ static enum status write_now(struct run *run, const struct progress *progress, s
     }
     checkpoint->is_there = checkpoint->is_there || status == STATUS_OK;
     if (status != STATUS_OK) {
-        remove_part(checkpoint->file);
+        SCRATCH char *part = tool_text(run->tool, "%s.part", checkpoint->file);
+        unlink(part);
     }
     return status;
 }

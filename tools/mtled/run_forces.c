@@ -159,24 +159,3 @@ void run_put_forces(struct run *run, const struct instant *instant)
         free(totals.moment);
     }
 }
-
-void run_report_springs(const struct run *run)
-{
-    const struct solid_system *system = &run->model->system;
-    const struct constraint_rows *penalties = &system->penalties;
-    for (int64_t d = 0; d < run->scene->displacement_count; d++) {
-        double sum = 0.0;
-        int64_t count = 0;
-        for (int64_t r = penalties->count - system->spring_count; r < penalties->count; r++) {
-            if (penalties->section[r] == d) {
-                double elongation = system_penalty_force(system, r, run->u) / system->penalty_stiffness[r];
-                sum += elongation * elongation;
-                count++;
-            }
-        }
-        if (count > 0) {
-            fprintf(stderr, "springs of %s\t%jd components, off by %.4g m (root mean square)\n",
-                    run->scene->displacements[d].label.name, count, sqrt(sum / (double)count));
-        }
-    }
-}

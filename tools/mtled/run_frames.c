@@ -36,11 +36,9 @@ void run_frames_check(const struct run *run)
                      output->fibre + output->gaps,
             tables = output->reactions + output->moments + output->energy;
     int64_t of_frame = 2 + (quasi_static ? fields : 0); /* u and its parameters */
-    int64_t others = 2 + 2 + 1 + fields + 2 * tables;   /* u; the supports of parameters; iteration */
+    /* Besides: u, the supports of parameters, iteration. */
+    int64_t others = 2 + 2 + 1 + fields + 2 * tables + run->stream->section_count;
     double frames = count_frames(run->scene);
-    for (int64_t i = 0; i < run->stream->section_count; i++) {
-        others += is_passed_on(run->stream->sections[i].name);
-    }
     int64_t most = (STREAM_SECTION_LIMIT - others) / of_frame - 1;
     if (frames > (double)most) {
         tool_fail(run->tool, STATUS_INPUT,

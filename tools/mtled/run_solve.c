@@ -1,9 +1,13 @@
+/* Solving: the analysis of a scene, and the verdicts on its outcome. */
 #include "mtled/run.h"
 
+#include "approx/field/field_compare.h"
+#include "solid/dynamics/dynamics.h"
 #include "solid/equilibrium/newton.h"
 #include "solid/equilibrium/relaxation.h"
 
 #include <math.h>
+#include <string.h>
 
 static const char slides[] =
     ": friction may not hold the body, which slides then: use a smaller load or a dynamic "
@@ -13,13 +17,10 @@ static const char beyond_limit[] =
     "a dynamic scene, or refine there; frames show up to which load it stands";
 
 /* End the run if it has not converged: no incomplete result is given. */
-static void judge(struct run *run, const struct statics_report *report)
+static void judge_statics(struct run *run, const struct statics_report *report)
 {
     const struct scene *scene = run->scene;
-    char load[48] = "";
-    if (report->load < 1.0) {
-        snprintf(load, sizeof load, " (at %.3g of the load)", report->load);
-    }
+    char load[32] = "";
     if (report->outcome == STATICS_CONVERGED) {
         if (report->error > scene->solver.tolerance) {
             run_note(run, "estimated error %.2g, not %.2g: %s less", report->error, scene->solver.tolerance,
@@ -42,9 +43,15 @@ static void judge(struct run *run, const struct statics_report *report)
         run_sliding_judge(run);
         return;
     }
-    const char *place = POINT_TEXT(scene->dim, run->model->system.X + report->worst_node * scene->dim);
     if (report->outcome == STATICS_STALLED) {
         run_contacts_penetrate(run, report->move, 0.0, false); /* as where nothing can give way */
+    }
+    if (report->load < 1.0) {
+        snprintf(load, sizeof load, " (at %.3g of the load)", report->load);
+    }
+    snprintf(run->at, sizeof run->at, "step %jd%s: ", report->steps, load);
+    const char *place = POINT_TEXT(scene->dim, run->model->system.X + report->worst_node * scene->dim);
+    if (report->outcome == STATICS_STALLED) {
         const char *remedy =
             run->folds.seen                            ? "" /* it is named with the fold */
             : system_has_friction(&run->model->system) ? slides
@@ -54,8 +61,8 @@ static void judge(struct run *run, const struct statics_report *report)
                 : ": it hardly resists some motion, as a slender body that has buckled may turn: a larger "
                   "tolerance, or supports against that motion may help";
         run_fail(run, STATUS_VERDICT,
-                 "step %jd%s: the estimated error stays at %.2g of the displacement, most of all at %s%s",
-                 report->steps, load, report->error, place, remedy);
+                 "the estimated error stays at %.2g of the displacement, most of all at %s%s", report->error,
+                 place, remedy);
     }
     if (report->outcome == STATICS_STOPPED) {
         run_checkpoint_stop(run, report->steps);
@@ -63,35 +70,19 @@ static void judge(struct run *run, const struct statics_report *report)
     if (report->outcome == STATICS_INVERTED) {
         const double *x = run->model->assembly.x + report->inverted_point * scene->dim;
         run_fail(run, STATUS_VERDICT,
-                 "step %jd%s: integration point %jd at %s inverts (J = %.3g), however slowly the load "
+                 "integration point %jd at %s inverts (J = %.3g), however slowly the load "
                  "grows: %s",
-                 report->steps, load, report->inverted_point, POINT_TEXT(scene->dim, x),
-                 report->least_jacobian, beyond_limit);
+                 report->inverted_point, POINT_TEXT(scene->dim, x), report->least_jacobian, beyond_limit);
     }
     if (report->outcome == STATICS_AWAY) {
-        run_fail(run, STATUS_VERDICT,
-                 "step %jd%s: the body moves on, by %.3g m so far, and does not come to rest: %s",
-                 report->steps, load, report->move,
-                 system_has_friction(&run->model->system) ? slides + 2 : beyond_limit);
+        run_fail(run, STATUS_VERDICT, "the body moves on, by %.3g m so far, and does not come to rest: %s",
+                 report->move, system_has_friction(&run->model->system) ? slides + 2 : beyond_limit);
     }
+    run->at[0] = '\0';
     run_fail(run, STATUS_VERDICT,
              "not converged after %jd steps%s: estimated remaining error %.2g of the displacement, "
              "most of all at %s: allow more (max_steps), or hold the body against rigid motion",
              report->steps, load, report->error, place);
-}
-
-/* The estimated error of the iteration, m: of the relaxation, and of the remaining penetration of
- * contacts. */
-static double error_left(const struct statics_report *report)
-{
-    return report->error * report->move + report->penetration;
-}
-
-static void put_error(const struct run *run)
-{
-    double *error = run_new_values(run, 1);
-    *error = run->error;
-    run_put(run, "iteration", 1, 1, "unit=m cols=error", error);
 }
 
 /* The error of steps of time that are chosen, and from which on it is noted; of the time: the longest step.
@@ -208,7 +199,19 @@ static void judge_steps(const struct run *run, const struct statics_report *repo
     }
 }
 
-void run_quasi_static(struct run *run)
+/* What verbose reports of both analyses begin with. */
+static void print_counts(const struct run *run, int64_t steps, int64_t loading_steps)
+{
+    const struct body *body = &run->model->system.body;
+    fprintf(stderr, "points\t%jd\nmerged cells\t%jd\npairs\t%jd\nsteps\t%jd\n", body->point_count,
+            body->cells.merged_count, body->pair_count, steps);
+    if (loading_steps >= 0) {
+        fprintf(stderr, "loading steps\t%jd\n", loading_steps);
+    }
+    fprintf(stderr, "force evaluations\t%jd\n", run->evaluations);
+}
+
+static void run_quasi_static(struct run *run)
 {
     const struct scene_solver *solver = &run->scene->solver;
     struct body *body = &run->model->system.body;
@@ -239,23 +242,149 @@ void run_quasi_static(struct run *run)
     run_clear_progress(&run->display);
     tool_check(run->tool, status, &error);
     run->last_good = report.load;
-    run->error = error_left(&report);
     run->evaluations = report.force_evaluations;
     run_folds_check(run, run->u, report.load, true);
-    judge(run, &report);
+    judge_statics(run, &report);
     judge_steps(run, &report);
-    put_error(run);
+    double *left = run_new_values(run, 1);
+    *left = report.error * report.move + report.penetration;
+    run_put(run, "iteration", 1, 1, "unit=m cols=error", left);
     if (run->verbose) {
-        fprintf(stderr,
-                "points\t%jd\nmerged cells\t%jd\npairs\t%jd\nsteps\t%jd\nloading steps\t%jd\nforce "
-                "evaluations\t%jd\n",
-                body->point_count, body->cells.merged_count, body->pair_count, report.steps,
-                report.loading_steps, report.force_evaluations);
-        fprintf(stderr, "iteration error, m\t%.3g\ndiscretisation error, m\tsee fielderr\n", run->error);
+        print_counts(run, report.steps, report.loading_steps);
+        fprintf(stderr, "iteration error, m\t%.3g\ndiscretisation error, m\tsee fielderr\n", *left);
         if (in_time) {
             fprintf(stderr, "error of the steps of time\t%.2g\n", body_time_error(body));
         }
         fprintf(stderr, "estimated error\t%.3g\nleast J\t%.4g\n", report.error, report.least_jacobian);
-        run_report_springs(run);
     }
+}
+
+/* ---- dynamics ---- */
+
+/* What lets the energy drift. Contact between facets of one body begins or ends with a jump where they turn
+ * by the limit of what faces each other, whatever the time step. */
+static const char drift_remedy[] =
+    "lower time_step_margin, or apply the load more slowly; where facets of one body touch at about 120 "
+    "degrees to each other, the contact energy jumps: round or refine the corner";
+
+/* End the run with a verdict if it is not done, with the place of the failure and the remedy. */
+static void judge_dynamic(struct run *run, const struct dynamics_report *report)
+{
+    const struct scene *scene = run->scene;
+    const struct solid_system *system = &run->model->system;
+    double largest_move = field_largest(system->node_count, system->dim, run->u);
+    bool inverted = report->outcome == DYNAMICS_INVERTED;
+    const char *place = POINT_TEXT(scene->dim, inverted ? run->model->assembly.x + report->point * scene->dim
+                                                        : system->X + report->node * scene->dim);
+    snprintf(run->at, sizeof run->at, "step %jd, t = %.6g s: ", report->steps, report->time);
+    switch (report->outcome) {
+    case DYNAMICS_DONE:
+        run->at[0] = '\0';
+        if (report->largest_drift > DYNAMICS_NOTED_DRIFT) {
+            run_note(run, "the energy balance is off by %.2g of the largest energy: %s",
+                     report->largest_drift, drift_remedy);
+        }
+        run_folds_judge(run);
+        run_contacts_penetrate(run, largest_move, system_penetration_allowed(largest_move), true);
+        run_contacts_touch(run);
+        run_sliding_judge(run);
+        return;
+    case DYNAMICS_INVERTED:
+        run_fail(run, STATUS_VERDICT,
+                 "integration point %jd at %s is inverted (J = %.3g): apply the "
+                 "load more slowly, or a smaller one, lower time_step_margin (%g), or refine there",
+                 report->point, place, report->least_jacobian, scene->solver.time_step_margin);
+    case DYNAMICS_COLLAPSED:
+        run_fail(run, STATUS_VERDICT,
+                 "the critical step has fallen below %g of the first one "
+                 "(%.3g s), by node %jd at %s: apply a smaller load, or refine there",
+                 DYNAMICS_LEAST_STEP, report->first_step, report->node, place);
+    case DYNAMICS_DRIFTED:
+        run_fail(run, STATUS_VERDICT,
+                 "the energy balance is off by %.2g of the largest energy (most "
+                 "%g), the fastest is node %jd at %s: %s",
+                 report->last_drift, DYNAMICS_MOST_DRIFT, report->node, place, drift_remedy);
+    case DYNAMICS_STOPPED:
+        run_checkpoint_stop(run, report->steps);
+    case DYNAMICS_TOO_MANY_STEPS:
+    default:
+        run->at[0] = '\0';
+        run_fail(run, STATUS_VERDICT,
+                 "t = %.6g s of %.6g s after %jd steps of %.3g s: allow more (max_steps)", report->time,
+                 scene->solver.end_time, report->steps, report->least_step);
+    }
+}
+
+/* Put the log as section `energy`. */
+static void put_energy(const struct run *run, const struct energy_log *log)
+{
+    _Static_assert(sizeof(struct energy) == ENERGY_COLUMNS * sizeof(double), "a row of numbers");
+    double *values = run_new_values(run, log->count * ENERGY_COLUMNS);
+    memcpy(values, log->rows, (size_t)log->count * sizeof *log->rows);
+    run_put(run, "energy", log->count, ENERGY_COLUMNS,
+            run->scene->dim == 2 ? "unit=s,J/m,J/m,J/m,J/m,J/m,1 "
+                                   "cols=time,kinetic,internal,contact,work,dissipated,error"
+                                 : "unit=s,J,J,J,J,J,1 "
+                                   "cols=time,kinetic,internal,contact,work,dissipated,error",
+            values);
+}
+
+static void run_dynamic(struct run *run)
+{
+    const struct scene_solver *solver = &run->scene->solver;
+    const struct scene_output *output = &run->scene->output;
+    struct dynamics_options options = {
+        .end_time = solver->end_time,
+        .time_step_margin = solver->time_step_margin,
+        .damping = solver->damping,
+        .most_steps = solver->max_steps,
+        .frame_interval = output->frames > 0 ? solver->end_time / (double)output->frames : output->interval,
+        .frame = run_put_frame,
+        .progress = run_progress,
+        .context = run,
+        .interrupted = run->checkpoint.interrupted,
+        .restored = run_checkpoint_state(run)};
+    struct dynamics_report report;
+    struct energy_log log = {0};
+    struct error error;
+    SCRATCH double *velocity = NULL;
+    if (run->scene->initial.table != NULL) {
+        velocity = run_new_values(run, run->model->system.node_count * run->scene->dim);
+        tool_check(run->tool, model_initial(run->model, run->u, velocity, &error), &error);
+    }
+    if (options.frame_interval > 0.0 && options.restored == NULL) {
+        run_put_frame(run, 0, 0.0, run->u);
+    }
+    double started = clock_seconds();
+    enum status status = dynamics_run(&run->model->system, &options, run->u, velocity, run->model->row_force,
+                                      output->energy ? &log : NULL, &report, &error);
+    run->solve_seconds += clock_seconds() - started;
+    run_clear_progress(&run->display);
+    tool_check(run->tool, status, &error);
+    if (output->energy) {
+        put_energy(run, &log);
+    }
+    run->last_good = report.last_good;
+    run->evaluations = report.force_evaluations;
+    run_folds_check(run, run->u, report.time, true);
+    judge_dynamic(run, &report);
+    energy_log_free(&log);
+    if (run->verbose) {
+        print_counts(run, report.steps, -1);
+        fprintf(stderr,
+                "critical step, s\t%.6g\nfirst step, s\t%.6g\nleast step, s\t%.6g\nstep changes\t%jd\n",
+                report.critical_step, report.first_step, report.least_step, report.step_changes);
+        fprintf(stderr, "largest energy error\t%.3g\nleast J\t%.4g\n", report.largest_drift,
+                report.least_jacobian);
+    }
+}
+
+void run_solve(struct run *run)
+{
+    if (run->scene->analysis == SCENE_DYNAMIC) {
+        run_dynamic(run);
+    } else {
+        run_quasi_static(run);
+    }
+    run_checkpoint_end();
 }
