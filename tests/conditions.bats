@@ -295,7 +295,7 @@ END
     { block quasi-static 'gravity = 0, -1' | sed 's/^region = body/region = body, lid/'; printf '[displacement floor]\nfacets = floor\ncomponents = 0, 0\n'; } > two.scene
     refused 1 "nothing holds body 2 (region lid, near (0.05, 1.05)): it may move along any direction and turn about any axis: " mtled two.scene two.mts
     sed '/^\[displacement floor/,$d' two.scene > none.scene
-    refused 1 "nothing holds body 1 (region body, near (0.05, 0.05)): it may move along any direction and turn about any axis: add a [displacement] that forbids that; 1 more body is free as well" mtled none.scene two.mts
+    refused 1 "nothing holds body 1 (region body, near (0.05, 0.05)): it may move along any direction and turn about any axis: add a [displacement] that forbids that" mtled none.scene two.mts
     { cat two.scene; printf '[displacement right]\nfacets = right\nnormal = 0\n'; } > slide.scene
     refused 1 "nothing holds body 2 (region lid, near (0.05, 1.05)): it may move along (0, 1): " mtled slide.scene two.mts
     printf -- '-1 0.999\n2 0.999\n' > wall.tsv

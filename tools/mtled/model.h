@@ -25,16 +25,15 @@ MUST_CHECK enum status model_build(struct stream *stream, const struct scene *sc
                                    struct error *error);
 void model_free(struct model *model);
 
-/* Steps of model_build, in their own files: materials of regions and points; displacements, loads and
- * contacts, with their curves, facets, nodes and tables. */
-MUST_CHECK enum status model_materials(struct model *model, struct error *error);
+/* Steps of model_build, in their own files: displacements, loads and contacts, with their curves, facets,
+ * nodes and tables. */
+MUST_CHECK enum status model_conditions(struct model *model, struct error *error);
 /* Append a curve; *index receives its number. */
 MUST_CHECK enum status model_add_curve(struct model *model, const struct scene_label *label,
                                        const struct scene_curve *curve, int32_t *index, struct error *error);
 /* The directions of fibres from the table of section m, or the stream: an own material for each of its
  * points. */
 MUST_CHECK enum status model_fibres(struct model *model, int64_t m, struct error *error);
-MUST_CHECK enum status model_conditions(struct model *model, struct error *error);
 /* Let supports stop where the stiffness jumps within a region, as a table of moduli may, and the stiffer side
  * own each interface: number the sides by stiffness and make the tables of the stream anew. Set
  * model->interfaces if supports still reach across a jump. */
