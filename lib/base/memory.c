@@ -10,43 +10,29 @@ static int bytes_of(int64_t count, size_t size, size_t *bytes)
     return count >= 0 && !__builtin_mul_overflow((size_t)count, size, bytes) && *bytes <= SIZE_MAX / 2;
 }
 
-/* Allocate aligned memory in multiples of 64 bytes; *rounded: its size. */
-static void *allocate(int64_t count, size_t size, size_t *rounded)
-{
-    size_t bytes;
-    if (!bytes_of(count, size, &bytes)) {
-        return NULL;
-    }
-    *rounded = (bytes + 63) / 64 * 64;
-    return aligned_alloc(64, *rounded > 0 ? *rounded : 64);
-}
+/* Pages of arrays from this size on become zeros when they are first touched. */
+static const size_t large = 1 << 20;
 
 void *array_new(int64_t count, size_t size)
 {
-    size_t bytes;
-    void *array = allocate(count, size, &bytes);
-    if (array != NULL) {
-        memset(array, 0, bytes);
-    }
-    return array;
-}
-
-void *array_new_untouched(int64_t count, size_t size)
-{
     size_t bytes, page = (size_t)sysconf(_SC_PAGESIZE);
-    char *array = allocate(count, size, &bytes);
+    if (!bytes_of(count, size, &bytes)) {
+        return NULL;
+    }
+    bytes = bytes > 0 ? (bytes + 63) / 64 * 64 : 64;
+    char *array = aligned_alloc(64, bytes);
     if (array == NULL) {
         return NULL;
     }
     /* Private pages that are released read as zeros afterwards. */
-    size_t before = (page - (uintptr_t)array % page) % page,
-           pages = bytes > before ? (bytes - before) / page : 0;
-    if (pages == 0 || madvise(array + before, pages * page, MADV_DONTNEED) != 0) {
-        memset(array, 0, bytes);
-        return array;
+    size_t before = (page - (uintptr_t)array % page) % page;
+    size_t whole = bytes > before ? (bytes - before) / page * page : 0;
+    if (bytes < large || madvise(array + before, whole, MADV_DONTNEED) != 0) {
+        before = bytes;
+        whole = 0;
     }
     memset(array, 0, before);
-    memset(array + before + pages * page, 0, bytes - before - pages * page);
+    memset(array + before + whole, 0, bytes - before - whole);
     return array;
 }
 

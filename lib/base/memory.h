@@ -6,12 +6,9 @@
 #include <stdint.h>
 
 /* Zeroed array of `count` elements of `size` bytes, aligned to 64 bytes, or NULL (out of memory, or
- * count < 0, or count * size overflows). A count of 0 gives a valid pointer. Release with free(). */
+ * count < 0, or count * size overflows). A count of 0 gives a valid pointer. A page of a large one takes
+ * memory when it is first touched. Release with free(). */
 void *array_new(int64_t count, size_t size);
-
-/* The same for an array most of whose pages may never be written. A page takes memory when it is first
- * written. */
-void *array_new_untouched(int64_t count, size_t size);
 
 /* Resize an array from malloc, array_grow or NULL to `count` elements; new bytes are not zeroed. On failure
  * returns NULL and the old array stays valid. The result is not 64-byte aligned. */
@@ -29,11 +26,6 @@ void memory_give_back(const void *begin, size_t bytes);
 #define NEW_ARRAY(pointer, count, error)                                                                     \
     ((*(pointer) = array_new((count), sizeof **(pointer))) != NULL ? STATUS_OK                               \
                                                                    : fail_memory((error), #pointer))
-
-#define NEW_ARRAY_UNTOUCHED(pointer, count, error)                                                           \
-    ((*(pointer) = array_new_untouched((count), sizeof **(pointer))) != NULL                                 \
-         ? STATUS_OK                                                                                         \
-         : fail_memory((error), #pointer))
 
 /* Resize *pointer, an array from malloc or NULL, to `count` elements; a status, as above. */
 #define RESIZE_ARRAY(pointer, count, error)                                                                  \

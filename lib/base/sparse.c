@@ -13,8 +13,8 @@ enum status sparse_new(int64_t row_count, int64_t column_count, int64_t entries,
 {
     *matrix = (struct sparse){.row_count = row_count, .column_count = column_count};
     RETURN_IF_ERROR(NEW_ARRAY(&matrix->ptr, row_count + 1, error));
-    RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(&matrix->idx, entries, error));
-    return NEW_ARRAY_UNTOUCHED(&matrix->value, entries, error);
+    RETURN_IF_ERROR(NEW_ARRAY(&matrix->idx, entries, error));
+    return NEW_ARRAY(&matrix->value, entries, error);
 }
 
 enum status sparse_transpose(const struct sparse *matrix, struct sparse *transposed, struct error *error)

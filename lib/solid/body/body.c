@@ -68,8 +68,8 @@ static enum status copy_points(const struct body_input *input, struct body *body
     RETURN_IF_ERROR(NEW_ARRAY(&body->material, points + BODY_POINT_PADDING, error));
     RETURN_IF_ERROR(NEW_ARRAY(&body->u, body->node_count * VECTOR_STRIDE(dim), error));
     RETURN_IF_ERROR(NEW_ARRAY(&body->force, body->node_count * VECTOR_STRIDE(dim), error));
-    RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(&body->F, points * dim * dim + BODY_POINT_PADDING, error));
-    RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(&body->J, points + BODY_POINT_PADDING, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&body->F, points * dim * dim + BODY_POINT_PADDING, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&body->J, points + BODY_POINT_PADDING, error));
     RETURN_IF_ERROR(NEW_ARRAY(&body->materials, input->material_count, error));
     memcpy(body->materials, input->materials, (size_t)input->material_count * sizeof *body->materials);
     for (int64_t q = 0; q < points; q++) {
@@ -161,7 +161,7 @@ static enum status copy_gradients(const struct body_input *input, struct body *b
     RETURN_IF_ERROR(body_share_rows(body, wanted, error));
     RETURN_IF_ERROR(row_ranges_of(share->begin_point * body->dim, share->end_point * body->dim, NULL,
                                   &share->values, error));
-    RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(&body->derivative, rows * VECTOR_STRIDE(body->dim), error));
+    RETURN_IF_ERROR(NEW_ARRAY(&body->derivative, rows * VECTOR_STRIDE(body->dim), error));
     body->pair_count = input->ptr[body->point_count];
     return STATUS_OK;
 }

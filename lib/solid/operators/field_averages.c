@@ -174,7 +174,7 @@ static enum status list_uses(const struct field_averages_input *input, struct fi
         count = number_parts(input, averages, b, count, row_of_use, row_of_part, number);
     }
     averages->part_first[blocks] = count;
-    RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(&averages->part_force, count * input->dim + 1, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&averages->part_force, count * input->dim + 1, error));
     return lists_by_row(count, 1, row_of_part, rows, &averages->part_ptr, &averages->part, error);
 }
 
@@ -198,8 +198,8 @@ enum status field_averages_build(const struct field_averages_input *input, struc
     if (rows > INT32_MAX / stride || uses > INT32_MAX) {
         return fail(error, STATUS_INPUT, "%lld edges and nodes: too many", (long long)rows);
     }
-    RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(&averages->value, rows * stride, error));
-    RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(&averages->force, rows * stride, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&averages->value, rows * stride, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&averages->force, rows * stride, error));
     RETURN_IF_ERROR(NEW_ARRAY(&averages->of_use, uses, error));
     RETURN_IF_ERROR(match_uses(input, averages, error));
     return list_uses(input, averages, error);

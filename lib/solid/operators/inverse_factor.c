@@ -32,8 +32,8 @@ static enum status transpose(struct inverse_factor *factor, struct error *error)
     int dim = factor->dim;
     NEW_SCRATCH(int64_t, next, nodes + 1, error);
     RETURN_IF_ERROR(NEW_ARRAY(&to->ptr, nodes + 1, error));
-    RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(&to->idx, entries, error));
-    RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(&to->block, entries * dim * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&to->idx, entries, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&to->block, entries * dim * dim, error));
     for (int64_t i = 0; i < entries; i++) {
         to->ptr[rows->idx[i] + 1]++;
     }

@@ -46,7 +46,7 @@ static enum status sum_nodes(const struct preconditioner *p, const struct body *
     const struct ranks *ranks = body->share.ranks;
     int64_t entries = p->size * p->size;
     struct first_failure failure = {STATUS_OK};
-    RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(sums, chunks->count * entries, error));
+    RETURN_IF_ERROR(NEW_ARRAY(sums, chunks->count * entries, error));
     RETURN_IF_ERROR(ranks_share(ranks, chunks->count, NULL, first, error));
 #pragma omp parallel for schedule(dynamic, 1) num_threads(chunks->threads)
     for (int64_t c = (*first)[ranks_rank(ranks)]; c < (*first)[ranks_rank(ranks) + 1]; c++) {

@@ -111,7 +111,7 @@ static enum status choose_all(struct batch *batch, struct error *error)
     struct lists *pattern = &batch->pattern;
     RETURN_IF_ERROR(NEW_ARRAY(&near.seen, batch->system->node_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&pattern->ptr, batch->count + 1, error));
-    RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(&pattern->idx, batch->count * MOST_ENTRIES, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&pattern->idx, batch->count * MOST_ENTRIES, error));
     for (int64_t k = 0; k < batch->count; k++) {
         int64_t at = pattern->ptr[k], length;
         RETURN_IF_ERROR(choose(batch->system, batch->first + k, &near, pattern->idx + at, &length, error));
@@ -174,7 +174,7 @@ static enum status list_rows(struct batch *batch, struct error *error)
         batch->needed.ptr[r + 1] = batch->needed.ptr[r] + list_columns(batch, &users, r, seen, NULL);
     }
     memset(seen, 0, (size_t)nodes * sizeof *seen);
-    RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(&batch->needed.idx, batch->needed.ptr[batch->row_count], error));
+    RETURN_IF_ERROR(NEW_ARRAY(&batch->needed.idx, batch->needed.ptr[batch->row_count], error));
     for (int64_t r = 0; r < batch->row_count; r++) {
         (void)list_columns(batch, &users, r, seen, batch->needed.idx + batch->needed.ptr[r]);
     }
@@ -187,7 +187,7 @@ static enum status make_rows(struct batch *batch, struct stiffness_rows *rows, s
     int64_t values = batch->system->dim * batch->system->dim;
     struct first_failure failure = {STATUS_OK};
     RETURN_IF_ERROR(stiffness_rows_prepare(rows, batch->row, batch->row_count, error));
-    RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(&batch->block, batch->needed.ptr[batch->row_count] * values, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&batch->block, batch->needed.ptr[batch->row_count] * values, error));
 #pragma omp parallel num_threads(chunks_of(batch->row_count, NODES_FOR_THREAD).threads)
     {
         struct stiffness_row row;
@@ -336,8 +336,8 @@ static enum status gather_rows(const struct body *body, struct block_rows *by_pl
     ranks_gather(share->ranks, by_place->block, (size_t)values * sizeof *by_place->block, first);
     entries = by_place->ptr[nodes];
     RETURN_IF_ERROR(NEW_ARRAY(&rows->ptr, nodes + 1, error));
-    RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(&rows->idx, entries, error));
-    RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(&rows->block, entries * values, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&rows->idx, entries, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&rows->block, entries * values, error));
     for (int64_t n = 0; n < nodes; n++) {
         int64_t p = body->node_place[n], at = by_place->ptr[p];
         rows->ptr[n + 1] = rows->ptr[n] + length[p];
@@ -370,8 +370,8 @@ enum status inverse_stiffness_factor_by(const struct solid_system *system, int64
     double least = 0.0;
     *factor = (struct inverse_factor){.ranks = share->ranks, .node_count = nodes, .dim = system->dim};
     RETURN_IF_ERROR(NEW_ARRAY(&by_place.ptr, nodes + 1, error));
-    RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(&by_place.idx, nodes * MOST_ENTRIES, error));
-    RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(&by_place.block, nodes * MOST_ENTRIES * values, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&by_place.idx, nodes * MOST_ENTRIES, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&by_place.block, nodes * MOST_ENTRIES * values, error));
     NEW_SCRATCH(double, diagonal, nodes, error);
     body_diagonal((struct body *)&system->body, true, diagonal);
     for (int64_t n = 0; n < nodes; n++) {

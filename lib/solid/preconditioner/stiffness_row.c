@@ -12,7 +12,7 @@ typedef double four __attribute__((vector_size(32), aligned(8), may_alias));
 static enum status numbered_begin(int64_t items, struct numbered *list, struct error *error)
 {
     RETURN_IF_ERROR(NEW_ARRAY(&list->number, items, error));
-    return NEW_ARRAY_UNTOUCHED(&list->item, items, error);
+    return NEW_ARRAY(&list->item, items, error);
 }
 
 enum status stiffness_row_begin(const struct stiffness_rows *rows, struct stiffness_row *row,
@@ -26,9 +26,9 @@ enum status stiffness_row_begin(const struct stiffness_rows *rows, struct stiffn
     RETURN_IF_ERROR(numbered_begin(fields, &row->fields, error));
     RETURN_IF_ERROR(numbered_begin(volumes, &row->volumes, error));
     RETURN_IF_ERROR(numbered_begin(body->node_count, &row->columns, error));
-    RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(&row->on_cell, body->point_count, error));
-    RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(&row->on_volume, volumes, error));
-    return NEW_ARRAY_UNTOUCHED(&row->on_field, fields, error);
+    RETURN_IF_ERROR(NEW_ARRAY(&row->on_cell, body->point_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&row->on_volume, volumes, error));
+    return NEW_ARRAY(&row->on_field, fields, error);
 }
 
 void stiffness_row_free(struct stiffness_row *row)

@@ -85,8 +85,8 @@ enum status stiffness_rows_begin(const struct solid_system *system, struct stiff
 {
     const struct body *body = &system->body;
     *rows = (struct stiffness_rows){.system = system};
-    RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(&rows->cells, body->point_count, error));
-    RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(&rows->slot, body->node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&rows->cells, body->point_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&rows->slot, body->node_count, error));
     for (int64_t q = 0; q < body->point_count; q++) {
         set_cell(body, q, &rows->cells[q]);
     }
