@@ -1,7 +1,7 @@
 /* Background cells: simplices (triangles, tetrahedra) on the nodes, and their faces. */
 #pragma once
 
-#include "base/keyed.h"
+#include "base/lists.h"
 #include "base/status.h"
 
 #include <stdbool.h>

@@ -1,4 +1,3 @@
-#include "base/keyed.h"
 #include "base/lists.h"
 #include "base/memory.h"
 #include "io/mesh/msh_build.h"

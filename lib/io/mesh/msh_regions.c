@@ -1,5 +1,4 @@
 #include "base/box.h"
-#include "base/keyed.h"
 #include "base/lists.h"
 #include "base/memory.h"
 #include "base/round_off.h"

@@ -5,7 +5,7 @@
 #include "approx/cells/parts.h"
 #include "approx/cells/quality.h"
 #include "approx/points/point_grid.h"
-#include "base/keyed.h"
+#include "base/lists.h"
 #include "base/memory.h"
 #include "base/round_off.h"
 #include "base/sets.h"
