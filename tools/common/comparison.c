@@ -85,36 +85,32 @@ static bool has_unknown(const struct tool *tool, const struct side *side)
     return false;
 }
 
-static enum status find_members(const struct side *a, struct findings *findings, struct error *error)
+/* Mark the nodes of the cells of a region. */
+static void mark_region(const struct cells *cells, const struct groups *regions, int64_t region, bool *marked)
 {
-    const struct cells *cells = &a->field.cells;
     int corners = cells->dim + 1;
-    if (stream_find(&a->stream, "cells.region") == NULL || cells->count == 0) {
-        return STATUS_OK;
-    }
-    RETURN_IF_ERROR(stream_groups(&a->stream, GROUP_REGION, true, &findings->regions, error));
-    int64_t count = findings->regions.names.count;
-    RETURN_IF_ERROR(NEW_ARRAY(&findings->member, cells->node_count * count, error));
+    memset(marked, 0, (size_t)cells->node_count * sizeof *marked);
     for (int64_t i = 0; i < cells->count * corners; i++) {
-        findings->member[cells->node[i] * count + findings->regions.group[i / corners]] = true;
+        marked[cells->node[i]] |= regions->group[i / corners] == region;
     }
-    return STATUS_OK;
 }
 
 /* (*chosen)[node_count], to be freed: the nodes of region `name`; NULL (all nodes) without a name. */
-static enum status choose_nodes(const struct findings *findings, int64_t node_count, const char *name,
+static enum status choose_nodes(const struct side *a, const char *name, struct findings *findings,
                                 bool **chosen, struct error *error)
 {
-    const struct names *names = &findings->regions.names;
+    const struct cells *cells = &a->field.cells;
+    int64_t region;
+    if (stream_find(&a->stream, "cells.region") != NULL && cells->count > 0) {
+        RETURN_IF_ERROR(stream_groups(&a->stream, GROUP_REGION, true, &findings->regions, error));
+    }
     if (name == NULL) {
         return STATUS_OK;
     }
-    int64_t region;
-    RETURN_IF_ERROR(fail_in(error, names_need(names, "region", name, &region, error), "--region"));
-    RETURN_IF_ERROR(NEW_ARRAY(chosen, node_count, error));
-    for (int64_t n = 0; n < node_count; n++) {
-        (*chosen)[n] = findings->member[n * names->count + region];
-    }
+    RETURN_IF_ERROR(
+        fail_in(error, names_need(&findings->regions.names, "region", name, &region, error), "--region"));
+    RETURN_IF_ERROR(NEW_ARRAY(chosen, cells->node_count, error));
+    mark_region(cells, &findings->regions, region, *chosen);
     return STATUS_OK;
 }
 
@@ -124,10 +120,9 @@ void findings_make(const struct tool *tool, const char *region, const struct sid
     struct error why;
     struct field_comparison *comparison = &findings->comparison;
     SCRATCH bool *chosen = NULL;
-    *findings = (struct findings){.member = NULL};
+    *findings = (struct findings){.reference = 0.0};
     sides_check(tool, a, b);
-    TOOL_TRY(tool, find_members(a, findings, &error));
-    TOOL_TRY(tool, choose_nodes(findings, a->field.cells.node_count, region, &chosen, &error));
+    TOOL_TRY(tool, choose_nodes(a, region, findings, &chosen, &error));
     enum status status =
         field_compare(&a->field, &b->field, chosen, tool_given(tool, "skip-outside"), comparison, &why);
     if (status != STATUS_OK) {
@@ -145,7 +140,6 @@ void findings_make(const struct tool *tool, const char *region, const struct sid
 void findings_free(struct findings *findings)
 {
     groups_free(&findings->regions);
-    free(findings->member);
     field_comparison_free(&findings->comparison);
     field_statistics_free(&findings->statistics);
 }
@@ -207,16 +201,19 @@ double iteration_error(const struct side *side)
     return known ? *(const double *)section->data : -1.0;
 }
 
-static enum status print_regions(const struct findings *findings, struct error *error)
+static enum status print_regions(const struct cells *cells, const struct findings *findings,
+                                 struct error *error)
 {
     const struct field_comparison *comparison = &findings->comparison;
     const struct names *names = &findings->regions.names;
     NEW_SCRATCH(int64_t, node, comparison->count, error);
+    NEW_SCRATCH(bool, marked, cells->node_count, error);
     for (int64_t r = 0; r < names->count; r++) {
         struct field_statistics statistics;
         int64_t count = 0;
+        mark_region(cells, &findings->regions, r, marked);
         for (int64_t i = 0; i < comparison->count; i++) {
-            if (findings->member[comparison->node[i] * names->count + r]) {
+            if (marked[comparison->node[i]]) {
                 node[count++] = comparison->node[i];
             }
         }
@@ -237,24 +234,22 @@ static enum status print_regions(const struct findings *findings, struct error *
 static void write_map(struct tool *tool, struct side *a, const char *name, double *value, const char *file)
 {
     static const char *const kept[] = {"nodes.x", "cells", "cells.region"};
-    struct stream *stream = &a->stream;
+    FREED_BY(stream_free) struct stream map = {.provenance = a->stream.provenance};
     char unit[32], attributes[48] = "";
+    a->stream.provenance = (struct names){0};
     if (section_attribute(a->section, "unit", unit, sizeof unit) && strchr(unit, ',') == NULL) {
         snprintf(attributes, sizeof attributes, "unit=%s", unit);
     }
-    for (int64_t s = stream->section_count; s-- > 0;) {
-        bool keep = false;
-        for (size_t k = 0; k < sizeof kept / sizeof *kept; k++) {
-            keep = keep || strcmp(stream->sections[s].name, kept[k]) == 0;
-        }
-        if (!keep) {
-            stream_remove(stream, stream->sections[s].name);
-        }
+    for (size_t k = 0; k < sizeof kept / sizeof *kept; k++) {
+        const struct section *s = stream_find(&a->stream, kept[k]);
+        TOOL_TRY(tool, s == NULL ? STATUS_OK
+                                 : stream_put(&map, s->name, s->type, s->rows, s->cols, s->attributes,
+                                              s->data, false, &error));
     }
-    TOOL_TRY(tool, stream_put(stream, name, TYPE_F8, a->field.cells.node_count, 1, attributes, value, false,
-                              &error));
+    TOOL_TRY(tool,
+             stream_put(&map, name, TYPE_F8, a->field.cells.node_count, 1, attributes, value, false, &error));
     tool->output = file;
-    tool_write(tool, stream);
+    tool_write(tool, &map);
 }
 
 /* Whether a value is within the tolerance of an option, which NaN is not; else note it. */
@@ -272,7 +267,7 @@ int comparison_end(struct tool *tool, struct side *a, struct side *b, struct fin
                    const char *name)
 {
     if (!tool_given(tool, "region")) {
-        TOOL_TRY(tool, print_regions(findings, &error));
+        TOOL_TRY(tool, print_regions(&a->field.cells, findings, &error));
     }
     bool good = !has_unknown(tool, a);
     good = !has_unknown(tool, b) && good;

@@ -18,7 +18,6 @@ struct side {
 /* The difference of two fields. */
 struct findings {
     struct groups regions; /* of A's cells; none: no names */
-    bool *member;          /* nodes * names.count: a node of A belongs to the region of every cell at it */
     struct field_comparison comparison;
     struct field_statistics statistics; /* of all nodes compared */
     double reference;                   /* largest norm of B's field */

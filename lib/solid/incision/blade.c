@@ -146,8 +146,8 @@ bool blade_is_closed(const struct blade *blade)
 
 /* ---- places ---- */
 
-/* The nearest point of the border; returns its distance, closed: INFINITY. */
-static double nearest_border(const struct sheet *sheet, const double *x, double *point)
+/* The distance from the border; closed: INFINITY. */
+static double distance_to_border(const struct sheet *sheet, const double *x)
 {
     int dim = sheet->surface.dim;
     double least2 = INFINITY;
@@ -161,11 +161,7 @@ static double nearest_border(const struct sheet *sheet, const double *x, double 
             double share = vector_dot(3, from, along) / vector_dot(3, along, along);
             add_scaled(3, fmin(fmax(share, 0.0), 1.0), along, here);
         }
-        double distance2 = vector_distance2(dim, here, x);
-        if (distance2 < least2) {
-            least2 = distance2;
-            memcpy(point, here, sizeof here);
-        }
+        least2 = fmin(least2, vector_distance2(dim, here, x));
     }
     return sqrt(least2);
 }
@@ -193,13 +189,8 @@ bool sheet_at(const struct sheet *sheet, const double *x, double reach, struct s
     return true;
 }
 
-double sheet_extent(const struct sheet *sheet, struct sheet_place *place)
+double sheet_extent(const struct sheet *sheet, const struct sheet_place *place)
 {
-    if (place->beyond) {
-        memcpy(place->border, place->near, sizeof place->border);
-        place->extent = vector_distance(sheet->surface.dim, place->foot, place->near);
-    } else {
-        place->extent = -nearest_border(sheet, place->near, place->border);
-    }
-    return place->extent;
+    return place->beyond ? vector_distance(sheet->surface.dim, place->foot, place->near)
+                         : -distance_to_border(sheet, place->near);
 }

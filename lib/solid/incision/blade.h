@@ -31,15 +31,14 @@ bool blade_is_closed(const struct blade *blade);
 /* Where a point is to a sheet, which is continued beyond its border along its tangents: */
 struct sheet_place {
     double height;    /* signed distance from it, m, positive in front */
-    double extent;    /* distance along it from its border, m, negative within; closed: -INFINITY */
     double normal[3]; /* unit, of the sheet there */
     bool beyond;      /* beyond the border, or on it */
     double near[3];   /* the nearest point of the sheet, */
-    double foot[3];   /* the nearest point of the sheet and its continuation, */
-    double border[3]; /* and of the border to the nearest of the sheet */
+    double foot[3];   /* and of the sheet and its continuation */
 };
 
-/* False: farther than `reach`. The extent and the border are found by sheet_extent, which takes longer; it
- * returns the extent. */
+/* False: farther than `reach`. */
 bool sheet_at(const struct sheet *sheet, const double *x, double reach, struct sheet_place *place);
-double sheet_extent(const struct sheet *sheet, struct sheet_place *place);
+
+/* The distance of that place along the sheet from its border, m, negative within; closed: -INFINITY. */
+double sheet_extent(const struct sheet *sheet, const struct sheet_place *place);
