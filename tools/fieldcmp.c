@@ -69,7 +69,6 @@ int main(int argc, char *argv[])
     side_read(&tool, tool.operands[1], field, &b);
     findings_make(&tool, tool_value(&tool, "region"), &a, &b, &findings);
     print_findings(&tool, &findings, &a.field.cells);
-    print_relative(&findings);
     print_iteration("iteration_a", &a);
     print_iteration("iteration_b", &b);
     return comparison_end(&tool, &a, &b, &findings, "difference");

@@ -222,7 +222,6 @@ int main(int argc, char *argv[])
     if (region == NULL && fine.field.cells.count > 0) {
         print_quantity("mean", NULL, field_error_mean(&fine.field.cells, findings.comparison.difference));
     }
-    print_relative(&findings);
     print_iteration(&tool, &fine, &coarse, share, findings.statistics.average);
     print_quantity("order", NULL, order);
     print_quantity("ratio", NULL, ratio);

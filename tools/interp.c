@@ -195,19 +195,6 @@ static void put_values(const struct tool *tool, const struct stream *stream, con
     tool_put(tool, output, field->name, TYPE_F8, points->at.count, field->cols, field->attributes, values);
 }
 
-static void put_all_fields(const struct tool *tool, const struct stream *stream, int64_t node_count,
-                           const struct evaluated *points, struct stream *output)
-{
-    for (int64_t s = 0; s < stream->section_count; s++) {
-        if (is_field(&stream->sections[s], node_count)) {
-            put_values(tool, stream, &stream->sections[s], points, output);
-        }
-    }
-    if (output->section_count == 1) {
-        tool_fail(tool, STATUS_INPUT, "no fields: no section of type f8 has one row per node");
-    }
-}
-
 static void put_fields(const struct tool *tool, const struct stream *stream, int64_t node_count,
                        const char *names, const struct evaluated *points, struct stream *output)
 {
@@ -273,19 +260,6 @@ static void find_points(const struct tool *tool, struct stream *stream, int dim,
                               &error));
 }
 
-/* Write the moved points, with the names that they have in their file. */
-static void write_landmarks(const struct tool *tool, int dim, const struct evaluated *points,
-                            const double *moved)
-{
-    struct output output;
-    if (dim != 3) {
-        tool_fail(tool, STATUS_INPUT, "-o %s: landmarks are points in 3D", tool->output);
-    }
-    tool_print_to(tool, &output, tool->output);
-    landmarks_print(output.file, tool->output, points->at.count, moved, points->row, points->at.label);
-    tool_printed(tool, &output);
-}
-
 int main(int argc, char *argv[])
 {
     struct tool tool;
@@ -307,13 +281,27 @@ int main(int argc, char *argv[])
     if (tool_given(&tool, "field")) {
         put_fields(&tool, &stream, node_count, tool_value(&tool, "field"), &points, &output);
     } else {
-        put_all_fields(&tool, &stream, node_count, &points, &output);
+        for (int64_t s = 0; s < stream.section_count; s++) {
+            if (is_field(&stream.sections[s], node_count)) {
+                put_values(&tool, &stream, &stream.sections[s], &points, &output);
+            }
+        }
+        if (output.section_count == 1) {
+            tool_fail(&tool, STATUS_INPUT, "no fields: no section of type f8 has one row per node");
+        }
     }
     if (tool_given(&tool, "deformed")) {
         put_deformed(&tool, &stream, dim, node_count, &points, &output);
     }
     if (writes_landmarks(&tool)) {
-        write_landmarks(&tool, dim, &points, stream_find(&output, "x.deformed")->data);
+        struct output landmarks; /* the moved points, with the names that they have in their file */
+        if (dim != 3) {
+            tool_fail(&tool, STATUS_INPUT, "-o %s: landmarks are points in 3D", tool.output);
+        }
+        TOOL_TRY(&tool, output_open(&landmarks, tool.output, false, &error));
+        landmarks_print(landmarks.file, tool.output, points.at.count,
+                        stream_find(&output, "x.deformed")->data, points.row, points.at.label);
+        TOOL_TRY(&tool, output_end(&landmarks, STATUS_OK, &error));
     } else {
         if (tool_given(&tool, "skip-outside")) {
             tool_put(&tool, &output, "points.row", TYPE_I8, points.at.count, 1, "", array_take(&points.row));

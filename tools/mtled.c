@@ -154,7 +154,7 @@ static void prepare(struct run *run)
         tool_note(run->tool, "%s", model->interfaces.text);
     }
     run->u = run_new_values(run, model->system.node_count * run->scene->dim);
-    run->prepare_seconds = clock_seconds() - run->display.started;
+    run->prepare_seconds = omp_get_wtime() - run->display.started;
     run_start(run);
     run_contacts_begin(run);
     run_folds_begin(run);
@@ -166,9 +166,9 @@ static void prepare(struct run *run)
 static void write_results(struct run *run)
 {
     run_put_results(run);
-    double started = clock_seconds();
+    double started = omp_get_wtime();
     run_frames_end(run);
-    run->write_seconds = clock_seconds() - started;
+    run->write_seconds = omp_get_wtime() - started;
     run_checkpoint_remove(run);
     if (run->verbose) {
         run_report_cost(run);
@@ -198,7 +198,7 @@ int main(int argc, char *argv[])
         .start_file = tool_value(&tool, "start"),
         .checkpoint = {.file = tool_value(&tool, "checkpoint"), .interval = parse(&tool)},
         .display = {.shown = !tool_given(&tool, "quiet") && process_speaks() && isatty(STDERR_FILENO)}};
-    double started = clock_seconds();
+    double started = omp_get_wtime();
     enum status status = scene_read(tool.operands[0], &scene, &error);
     if (status != STATUS_OK) {
         tool_fail(&tool, status, "%s%s", error.text,
@@ -207,10 +207,10 @@ int main(int argc, char *argv[])
     tool_read(&tool, tool.operands[1], &stream);
     sections_remove(&stream, MADE_WITH_RESULTS, MADE_WITH_RESULTS); /* earlier ones */
     run_frames_check(&run);
-    run.read_seconds = clock_seconds() - started;
+    run.read_seconds = omp_get_wtime() - started;
     stage_fill(&tool, &stream, "shapefn");
     run_start_read(&run);
-    run.display.started = clock_seconds();
+    run.display.started = omp_get_wtime();
     prepare(&run);
     run_solve(&run);
     write_results(&run);

@@ -380,9 +380,9 @@ int main(int argc, char *argv[])
                  array_take(&rows.value));
         tool_write(&tool, &stream);
     } else {
-        tool_print_to(&tool, &output, tool.output);
+        TOOL_TRY(&tool, output_open(&output, tool.output, false, &error));
         print_rows(output.file, &request, &rows);
-        tool_printed(&tool, &output);
+        TOOL_TRY(&tool, output_end(&output, STATUS_OK, &error));
     }
     points_free(&rows.points);
     free(rows.value);

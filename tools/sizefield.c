@@ -211,9 +211,9 @@ int main(int argc, char *argv[])
     if (tool_given(&tool, "binary") || tool.text) {
         write_sizes(&tool, &layered);
     } else {
-        tool_print_to(&tool, &output, tool.output);
+        TOOL_TRY(&tool, output_open(&output, tool.output, false, &error));
         print_view(output.file, &layered, unit);
-        tool_printed(&tool, &output);
+        TOOL_TRY(&tool, output_end(&output, STATUS_OK, &error));
     }
     if (tool_given(&tool, "verbose")) {
         report(&cells, &field, unit);

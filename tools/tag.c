@@ -228,15 +228,6 @@ static void report(const struct tool *tool, const struct group_body *body, enum 
     tool_note(tool, "%s %s: %s", group_kind_names[kind], list->names.name[group], text);
 }
 
-static void drop_stale(const struct tool *tool, struct stream *stream)
-{
-    int64_t before = stream->section_count;
-    sections_remove(stream, MADE_WITH_SUPPORT, MADE_WITH_SHAPES);
-    if (stream->section_count < before) {
-        tool_note(tool, "facets have changed: the sections of support and shapefn are left out");
-    }
-}
-
 static void finish(const struct tool *tool, struct group_body *body, struct stream *stream, bool verbose)
 {
     drop_empty_regions(tool, &body->groups[GROUP_REGION]);
@@ -247,7 +238,11 @@ static void finish(const struct tool *tool, struct group_body *body, struct stre
     }
     TOOL_TRY(tool, group_body_write(body, stream, &error));
     if (body->groups[GROUP_FACETS].changed) {
-        drop_stale(tool, stream);
+        int64_t before = stream->section_count;
+        sections_remove(stream, MADE_WITH_SUPPORT, MADE_WITH_SHAPES);
+        if (stream->section_count < before) {
+            tool_note(tool, "facets have changed: the sections of support and shapefn are left out");
+        }
     }
 }
 

@@ -249,10 +249,10 @@ int main(int argc, char *argv[])
     TOOL_TRY(&tool, stream_groups(&stream, GROUP_REGION, true, &body.regions, &error));
     TOOL_TRY(&tool, stream_groups(&stream, GROUP_FACETS, false, &body.facets, &error));
     TOOL_TRY(&tool, stream_groups(&stream, GROUP_NODES, false, &body.sets, &error));
-    tool_print_to(&tool, &output, tool.output);
+    TOOL_TRY(&tool, output_open(&output, tool.output, false, &error));
     if (is_msh) {
         write_msh(output.file, &body, unit);
-        tool_printed(&tool, &output);
+        TOOL_TRY(&tool, output_end(&output, STATUS_OK, &error));
     } else {
         TOOL_TRY(&tool, output_end(&output, write_inp(output.file, &body, unit, &error), &error));
     }

@@ -51,9 +51,9 @@ static void write_vtu(const struct tool *tool, struct plot *plot, int64_t frame,
 {
     struct output output;
     TOOL_TRY(tool, plot_choose(plot, frame, &error));
-    tool_print_to(tool, &output, name);
+    TOOL_TRY(tool, output_open(&output, name, false, &error));
     vtu_write(output.file, &plot->mesh, plot->field_count, plot->fields, tool->text);
-    tool_printed(tool, &output);
+    TOOL_TRY(tool, output_end(&output, STATUS_OK, &error));
 }
 
 /* Write NAME-0001.vtu, ... and then NAME.pvd, which lists them. */
@@ -75,9 +75,9 @@ static void write_series(const struct tool *tool, struct plot *plot)
         write_vtu(tool, plot, frame, paths[i]);
         names[i] = paths[i] + folder;
     }
-    tool_print_to(tool, &output, tool->output);
+    TOOL_TRY(tool, output_open(&output, tool->output, false, &error));
     pvd_write(output.file, count, names, times);
-    tool_printed(tool, &output);
+    TOOL_TRY(tool, output_end(&output, STATUS_OK, &error));
     for (int64_t i = 0; i < count; i++) {
         free(paths[i]);
     }

@@ -61,16 +61,12 @@ static void solve_row(int64_t n, int64_t k, int64_t last, int64_t i, double *mat
     }
 }
 
-static int threads_for(int64_t rows)
-{
-    return chunks_of(rows * rows, ENTRIES_FOR_THREAD).threads;
-}
-
 /* The columns of L from k to before `last` in the rows from there on, and these less what they take: each
  * entry is summed in the order of the columns, as without panels. */
 static void reduce(int64_t n, int64_t k, int64_t last, double *matrix)
 {
-#pragma omp parallel num_threads(threads_for(n - last))
+    int threads = chunks_of((n - last) * (n - last), ENTRIES_FOR_THREAD).threads;
+#pragma omp parallel num_threads(threads)
     {
 #pragma omp for schedule(static)
         for (int64_t i = last; i < n; i++) {

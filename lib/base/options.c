@@ -119,16 +119,6 @@ static enum status use(struct options *options, struct option *option, const cha
     return STATUS_OK;
 }
 
-/* --name, --name=VALUE or --name VALUE at argv[*at]. */
-static enum status parse_long(struct options *options, int argc, char *argv[], int *at, struct error *error)
-{
-    const char *shown = argv[*at], *name = shown + 2, *equals = strchr(name, '=');
-    int index = find_name(options, name, strcspn(name, "="));
-    return index < 0 ? fail(error, STATUS_INPUT, "unknown option %s (see -h)", shown)
-                     : use(options, &options->option[index], shown, equals != NULL ? equals + 1 : NULL, argc,
-                           argv, at, error);
-}
-
 /* -abc (flags joined), -kVALUE or -k VALUE at argv[*at]. */
 static enum status parse_short(struct options *options, int argc, char *argv[], int *at, struct error *error)
 {
@@ -159,7 +149,13 @@ enum status options_parse(struct options *options, int argc, char *argv[], int *
         } else if (strcmp(argv[at], "--") == 0) {
             options_ended = true;
         } else if (argv[at][1] == '-') {
-            RETURN_IF_ERROR(parse_long(options, argc, argv, &at, error));
+            const char *shown = argv[at], *equals = strchr(shown, '=');
+            int index = find_name(options, shown + 2, strcspn(shown + 2, "="));
+            if (index < 0) {
+                return fail(error, STATUS_INPUT, "unknown option %s (see -h)", shown);
+            }
+            RETURN_IF_ERROR(use(options, &options->option[index], shown, equals != NULL ? equals + 1 : NULL,
+                                argc, argv, &at, error));
         } else {
             RETURN_IF_ERROR(parse_short(options, argc, argv, &at, error));
         }

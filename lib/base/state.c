@@ -2,17 +2,6 @@
 
 #include <stdio.h>
 
-static enum status check_counts(const struct state_value *value, struct error *error)
-{
-    const int64_t *counts = value->values;
-    for (int64_t i = 0; value->type == STATE_COUNTS && i < value->count; i++) {
-        if (counts[i] < 0) {
-            return fail(error, STATUS_INPUT, "%s: %jd is negative", value->name, counts[i]);
-        }
-    }
-    return STATUS_OK;
-}
-
 enum status state_visit(const struct state *state, const char *prefix, const struct state_value values[],
                         int64_t count, struct error *error)
 {
@@ -24,7 +13,12 @@ enum status state_visit(const struct state *state, const char *prefix, const str
             value.name = name;
         }
         RETURN_IF_ERROR(state->visit(state->context, &value, error));
-        RETURN_IF_ERROR(check_counts(&value, error));
+        for (int64_t k = 0; value.type == STATE_COUNTS && k < value.count; k++) {
+            if (((const int64_t *)value.values)[k] < 0) {
+                return fail(error, STATUS_INPUT, "%s: %jd is negative", value.name,
+                            ((const int64_t *)value.values)[k]);
+            }
+        }
     }
     return STATUS_OK;
 }

@@ -183,11 +183,6 @@ void print_findings(const struct tool *tool, const struct findings *findings, co
         printf("%s%.9g", i == 0 ? "max_at\t" : " ", cells->x[all->largest_at * cells->dim + i]);
     }
     putchar('\n');
-}
-
-void print_relative(const struct findings *findings)
-{
-    const struct field_statistics *all = &findings->statistics;
     print_quantity("reference", NULL, findings->reference);
     print_quantity("avg_relative", NULL, relative(all->average, findings->reference));
     print_quantity("max_relative", NULL, relative(all->largest, findings->reference));

@@ -44,11 +44,9 @@ void findings_free(struct findings *findings);
 /* Print "name TAB value", or "name.part TAB value". */
 void print_quantity(const char *name, const char *part, double value);
 
-/* Print the statistics of all nodes, their number, and the place of the largest difference. */
+/* Print the statistics of all nodes, their number, the place of the largest difference, and what is relative
+ * to the reference. */
 void print_findings(const struct tool *tool, const struct findings *findings, const struct cells *cells);
-
-/* Print the statistics relative to the reference. */
-void print_relative(const struct findings *findings);
 
 /* The error of the iteration in a result, as estimated by mtled, m; negative: not known. */
 double iteration_error(const struct side *side);

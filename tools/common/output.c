@@ -40,50 +40,35 @@ static void handle_signals(void)
     }
 }
 
-static mode_t file_mode(const struct stat *present)
+/* Open the temporary file, with the mode of the one that is to be replaced (NULL: none); -1: it fails. With
+ * `grows` it is TARGET.part; else FOLDER/.NAME.XXXXXX beside it, a long name shortened to fit, which is
+ * removed if the program ends before it is complete. */
+static int open_temporary(struct output *output, bool grows, const struct stat *present)
 {
-    if (present != NULL) {
-        return present->st_mode & 07777;
+    static bool prepared;
+    const char *target = output->target, *slash = strrchr(target, '/');
+    int folder = slash != NULL ? (int)(slash - target + 1) : 0, descriptor;
+    int length = grows ? asprintf(&output->temporary, "%s.part", target)
+                       : asprintf(&output->temporary, "%.*s.%.200s.XXXXXX", folder, target, target + folder);
+    if (length < 0) {
+        output->temporary = NULL;
+        return -1;
+    }
+    if (grows) {
+        descriptor = open(output->temporary, O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0666);
+    } else {
+        if (!prepared) {
+            atexit(remove_pending);
+            prepared = true;
+        }
+        handle_signals();
+        descriptor = mkostemp(output->temporary, O_CLOEXEC);
+        pending = descriptor >= 0 ? output->temporary : NULL;
     }
     mode_t mask = umask(0);
     umask(mask);
-    return 0666 & ~mask;
-}
-
-/* TARGET.part, or FOLDER/.NAME.XXXXXX beside it; a long name is shortened to fit. */
-static char *temporary_name(const char *target, bool grows)
-{
-    const char *slash = strrchr(target, '/');
-    int folder = slash != NULL ? (int)(slash - target + 1) : 0;
-    char *name;
-    int length = grows ? asprintf(&name, "%s.part", target)
-                       : asprintf(&name, "%.*s.%.200s.XXXXXX", folder, target, target + folder);
-    return length < 0 ? NULL : name;
-}
-
-/* Open a file of a new name, which is removed if the program ends before it is complete. */
-static int open_new(struct output *output)
-{
-    static bool prepared;
-    if (!prepared) {
-        atexit(remove_pending);
-        prepared = true;
-    }
-    handle_signals();
-    int descriptor = mkostemp(output->temporary, O_CLOEXEC);
-    pending = descriptor >= 0 ? output->temporary : NULL;
-    return descriptor;
-}
-
-/* Open the temporary file, with the mode of the one that is to be replaced; -1: it fails. */
-static int open_temporary(struct output *output, bool grows, const struct stat *present)
-{
-    output->temporary = temporary_name(output->target, grows);
-    int descriptor =
-        output->temporary == NULL ? -1
-        : grows ? open(output->temporary, O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0666)
-                : open_new(output);
-    return descriptor >= 0 && fchmod(descriptor, file_mode(present)) == 0 ? descriptor : -1;
+    mode_t mode = present != NULL ? present->st_mode & 07777 : 0666 & ~mask;
+    return descriptor >= 0 && fchmod(descriptor, mode) == 0 ? descriptor : -1;
 }
 
 /* Close and remove the temporary file; the former file stays unchanged. */
@@ -172,14 +157,4 @@ enum status output_end(struct output *output, enum status status, struct error *
     }
     abandon(output);
     return status;
-}
-
-void tool_print_to(const struct tool *tool, struct output *output, const char *name)
-{
-    TOOL_TRY(tool, output_open(output, name, false, &error));
-}
-
-void tool_printed(const struct tool *tool, struct output *output)
-{
-    TOOL_TRY(tool, output_end(output, STATUS_OK, &error));
 }

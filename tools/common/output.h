@@ -23,7 +23,3 @@ MUST_CHECK enum status output_open_stream(struct output *output, const struct to
 /* Close the output and rename the file to its target; if this or the writing, by `status` and by the state of
  * `file`, failed, remove it. Reports delayed write errors. The message of a failure begins with the name. */
 MUST_CHECK enum status output_end(struct output *output, enum status status, struct error *error);
-
-/* Begin and end an output of which all is printed to `file`; exit on failure. */
-void tool_print_to(const struct tool *tool, struct output *output, const char *name);
-void tool_printed(const struct tool *tool, struct output *output);

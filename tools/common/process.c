@@ -12,11 +12,6 @@ const struct ranks *process_ranks(void)
     return NULL;
 }
 
-bool process_speaks(void)
-{
-    return true;
-}
-
 bool process_fails_alone(void)
 {
     return false;

@@ -15,7 +15,10 @@ void process_begin(int *argc, char ***argv);
 const struct ranks *process_ranks(void);
 
 /* Whether this process writes and prints. */
-bool process_speaks(void);
+static inline bool process_speaks(void)
+{
+    return ranks_rank(process_ranks()) == 0;
+}
 
 /* To be called if this process fails. Returns true, after some seconds, if not all others fail, too; this
  * process must then print its message. */

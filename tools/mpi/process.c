@@ -1,8 +1,7 @@
 /* The processes of a run under mpirun; see process.h. */
 #include "process.h"
 
-#include "base/clock.h"
-
+#include <omp.h>
 #include <mpi.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -24,12 +23,6 @@ static struct {
     bool failing, alone, ended;
     MPI_Request failed;
 } own;
-
-static _Noreturn void fail_memory_now(void)
-{
-    fprintf(stderr, "mtled: out of memory\n");
-    _exit((int)STATUS_SYSTEM);
-}
 
 static MPI_Datatype type_of(size_t size)
 {
@@ -121,7 +114,8 @@ void process_begin(int *argc, char ***argv)
     own.place = calloc((size_t)ranks->count, sizeof *own.place);
     own.requests = calloc(2 * (size_t)ranks->count, sizeof(MPI_Request));
     if (own.count == NULL || own.place == NULL || own.requests == NULL) {
-        fail_memory_now();
+        fprintf(stderr, "mtled: out of memory\n");
+        _exit((int)STATUS_SYSTEM);
     }
     if (*argc > 0) {
         (*argv)[0] = name;
@@ -133,22 +127,17 @@ const struct ranks *process_ranks(void)
     return own.ranks.count > 1 ? &own.ranks : NULL;
 }
 
-bool process_speaks(void)
-{
-    return own.ranks.rank == 0;
-}
-
 bool process_fails_alone(void)
 {
     int all = 0;
-    double started = clock_seconds();
+    double started = omp_get_wtime();
     if (own.failing || own.ended) {
         return own.alone;
     }
     own.failing = true;
     MPI_Ibarrier(own.ends, &own.failed);
     MPI_Test(&own.failed, &all, MPI_STATUS_IGNORE);
-    while (!all && clock_seconds() - started < most_wait) {
+    while (!all && omp_get_wtime() - started < most_wait) {
         usleep(1000);
         MPI_Test(&own.failed, &all, MPI_STATUS_IGNORE);
     }

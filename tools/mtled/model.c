@@ -109,11 +109,6 @@ enum status model_nodes(struct model *model, const struct scene_label *label, co
 
 /* ---- materials ---- */
 
-static bool has_fibres(const struct scene_material *section)
-{
-    return vector_dot(3, section->directions, section->directions) > 0.0;
-}
-
 /* Check that row `row` of a table belongs to point q, and contains valid moduli. */
 static enum status check_row(const struct model *model, const struct scene_material *section,
                              const struct table *table, int64_t row, int64_t q, struct error *error)
@@ -223,9 +218,10 @@ static enum status set_materials(struct model *model, struct error *error)
     RETURN_IF_ERROR(NEW_ARRAY(&list->group, scene->material_count + points, error));
     list->count = scene->material_count;
     for (int64_t m = 0; m < scene->material_count; m++) {
+        const double *directions = scene->materials[m].directions;
         list->items[m] = scene->materials[m].material;
         list->items[m].parameters = scene->materials[m].parameters;
-        list->items[m].fibre = has_fibres(&scene->materials[m]) ? scene->materials[m].directions : NULL;
+        list->items[m].fibre = vector_dot(3, directions, directions) > 0.0 ? directions : NULL;
         list->items[m].prony = scene->materials[m].prony.values;
         list->items[m].prony_terms = scene->materials[m].prony.terms;
         list->section[m] = list->group[m] = (int32_t)m;

@@ -118,18 +118,6 @@ static enum status stream_axes(const struct model *model, struct source *source,
     return STATUS_OK;
 }
 
-/* The material of point q with these directions: its own copy, unless a table of moduli has made one already.
- */
-static void set_directions(struct material_list *list, int64_t m, int64_t q, const double *directions)
-{
-    if (list->of_point[q] == m) {
-        list->items[list->count] = list->items[m];
-        list->section[list->count] = list->group[list->count] = (int32_t)m;
-        list->of_point[q] = (int32_t)list->count++;
-    }
-    list->items[list->of_point[q]].fibre = directions;
-}
-
 static enum status set_points(struct model *model, int64_t m, const struct source *source,
                               struct error *error)
 {
@@ -144,7 +132,12 @@ static enum status set_points(struct model *model, int64_t m, const struct sourc
     for (int64_t q = 0; q < model->assembly.point_count; q++) {
         if (list->section[list->of_point[q]] == m) {
             RETURN_IF_ERROR(directions_at(model, source, q, directions, error));
-            set_directions(list, m, q, directions);
+            if (list->of_point[q] == m) { /* else a table of moduli has made a material of its own already */
+                list->items[list->count] = list->items[m];
+                list->section[list->count] = list->group[list->count] = (int32_t)m;
+                list->of_point[q] = (int32_t)list->count++;
+            }
+            list->items[list->of_point[q]].fibre = directions;
             directions += 6;
         }
     }

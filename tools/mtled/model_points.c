@@ -108,18 +108,7 @@ static enum status read_section(struct point_section *p, struct error *error)
     return STATUS_OK;
 }
 
-/* Give the arrays of the field to the model and the condition. */
-static enum status keep_field(struct point_section *p, struct field_table *field, struct error *error)
-{
-    p->condition->field =
-        (struct neighbours){.count = field->lists.count, .ptr = field->lists.ptr, .idx = field->lists.idx};
-    p->condition->field_phi = field->phi;
-    RETURN_IF_ERROR(model_own(p->model, array_take(&field->lists.ptr), error));
-    RETURN_IF_ERROR(model_own(p->model, array_take(&field->lists.idx), error));
-    return model_own(p->model, array_take(&field->phi), error);
-}
-
-/* Refuse points that are too far from the body, and set the field at the others. */
+/* Refuse points that are too far from the body, and set the field at the others: the model owns it. */
 static enum status find_field(struct point_section *p, struct error *error)
 {
     const struct cells *cells = &p->model->assembly.cells;
@@ -150,7 +139,12 @@ static enum status find_field(struct point_section *p, struct error *error)
     }
     RETURN_IF_ERROR(field_table_build(&recorded, cells, measured->count, measured->x,
                                       p->section->condition.table, &field, error));
-    return keep_field(p, &field, error);
+    p->condition->field =
+        (struct neighbours){.count = field.lists.count, .ptr = field.lists.ptr, .idx = field.lists.idx};
+    p->condition->field_phi = field.phi;
+    RETURN_IF_ERROR(model_own(p->model, array_take(&field.lists.ptr), error));
+    RETURN_IF_ERROR(model_own(p->model, array_take(&field.lists.idx), error));
+    return model_own(p->model, array_take(&field.phi), error);
 }
 
 enum status model_points(struct model *model, const struct scene_displacement *section,

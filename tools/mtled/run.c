@@ -8,7 +8,7 @@
 
 static void show_progress(struct display *display, const struct progress *progress)
 {
-    double now = clock_seconds();
+    double now = omp_get_wtime();
     if (!display->shown || now - display->last < 0.25) {
         return;
     }
@@ -100,9 +100,6 @@ void run_report_cost(const struct run *run)
 
 /* ---- --start: from the field of another run, near its result ---- */
 
-/* The least share of a field that a run begins at. */
-static const double least_start = 0.05;
-
 void run_start_read(struct run *run)
 {
     const struct scene *scene = run->scene;
@@ -117,25 +114,6 @@ void run_start_read(struct run *run)
                   "for frames, has states before");
     }
     side_read_displacement(run->tool, file, "u", scene->dim, &run->start);
-}
-
-/* A body that has been cut may be inverted, at the edge of an earlier cut, in a field that was none of its
- * own: then the run begins at half of that, and so on. */
-static void halve_inverted(struct run *run)
-{
-    struct solid_system *system = &run->model->system;
-    int64_t size = system->node_count * system->dim;
-    SCRATCH double *force = run_new_values(run, size);
-    double share = 1.0;
-    while (share > least_start && !(body_force(&system->body, run->u, force).least_jacobian > 0.0)) {
-        share *= 0.5;
-        for (int64_t i = 0; i < size; i++) {
-            run->u[i] *= 0.5;
-        }
-    }
-    if (share < 1.0) {
-        tool_note(run->tool, "--start: %s: inverts a cell: begun at %g of u", run->start.name, share);
-    }
 }
 
 /* The contact whose rigid surface the body goes through on the straight way from rest to u, in steps of a
@@ -173,13 +151,18 @@ void run_start(struct run *run)
                                 field_carry(&field->cells, field->cols, values, &run->model->assembly.cells,
                                             run->u, &error),
                                 "--start: %s", run->start.name));
-    halve_inverted(run);
-    const struct contact *through = passed_through(run);
-    if (through != NULL) {
-        tool_note(run->tool, "--start: %s: u goes through the surface of [contact %s]: begun at rest",
-                  run->start.name, run->scene->contacts[through->section].label.name);
-        memset(run->u, 0, (size_t)(run->model->system.node_count * run->scene->dim) * sizeof *run->u);
+    struct solid_system *system = &run->model->system;
+    SCRATCH double *force = run_new_values(run, system->node_count * system->dim);
+    /* A body that has been cut may be inverted, at the edge of an earlier cut, in a field that was none of
+     * its own. */
+    bool inverts = !(body_force(&system->body, run->u, force).least_jacobian > 0.0);
+    const struct contact *through = inverts ? NULL : passed_through(run);
+    if (inverts || through != NULL) {
+        tool_note(run->tool, "--start: %s: u %s%s%s: begun at rest", run->start.name,
+                  inverts ? "inverts a cell" : "goes through the surface of [contact ",
+                  inverts ? "" : run->scene->contacts[through->section].label.name, inverts ? "" : "]");
+        memset(run->u, 0, (size_t)(system->node_count * system->dim) * sizeof *run->u);
         return;
     }
-    TOOL_TRY(run->tool, system_start(&run->model->system, run->u, &error));
+    TOOL_TRY(run->tool, system_start(system, run->u, &error));
 }

@@ -6,12 +6,12 @@
 #include "mtled/model.h"
 #include "process.h"
 #include "approx/support/support.h"
-#include "base/clock.h"
 #include "base/state.h"
 #include "io/checkpoint/checkpoint.h"
 #include "solid/folds/folds.h"
 #include "solid/system/progress.h"
 
+#include <omp.h>
 #include <signal.h>
 
 /* Progress on a terminal: one line, updated a few times a second. */
@@ -49,12 +49,8 @@ struct run_frames {
 
 struct run_folds {
     struct folds folds;
-    bool *held;          /* whether the displacement is prescribed at each face of the boundary */
     double *field;       /* scratch: node_count * dim */
     int64_t *node_first; /* the nodes at which each process evaluates it */
-    bool *stopped;       /* scratch: node_count */
-    bool *in_contact;    /* node_count: see folds.h */
-    int32_t *flat;       /* scratch: cell_count */
     bool has_space;
     struct support_space space; /* for the field within cells, made when it is needed */
     bool reported;              /* in the message that ends the run */
@@ -209,9 +205,6 @@ void run_put_results(struct run *run);
  * and frames keep is restored, its tables of frames are put into run->stream. Exits if the file is of another
  * run. */
 void run_checkpoint_begin(struct run *run);
-
-/* The state from which the run continues, or NULL. */
-const struct state *run_checkpoint_state(const struct run *run);
 
 /* After a step: write a checkpoint if it is due. False if a signal ends the run. */
 bool run_checkpoint_step(struct run *run, const struct progress *progress);

@@ -39,18 +39,6 @@ static void share(const struct run *run, struct stream *stream, const struct sec
                                    section->attributes, section->data, false, &error));
 }
 
-/* Copy the tables of frames of the restored run into the stream. */
-static void take_tables(struct run *run)
-{
-    const struct stream *restored = &run->checkpoint.restored;
-    for (int64_t i = 0; i < restored->section_count; i++) {
-        const struct section *section = &restored->sections[i];
-        if (run_is_of_frames(section->name) && section->type == TYPE_F8) {
-            share(run, run->stream, section);
-        }
-    }
-}
-
 /* Whether all processes have the same number. */
 static bool agree(int64_t number)
 {
@@ -105,7 +93,12 @@ static void resume(struct run *run)
     }
     tool_note(run->tool, "going on from step %jd, kept in %s", step, checkpoint->file);
     checkpoint->state = checkpoint_state(&checkpoint->restored);
-    take_tables(run);
+    for (int64_t i = 0; i < checkpoint->restored.section_count; i++) {
+        const struct section *section = &checkpoint->restored.sections[i];
+        if (run_is_of_frames(section->name) && section->type == TYPE_F8) {
+            share(run, run->stream, section);
+        }
+    }
     TOOL_TRY(run->tool, visit_own(run, &checkpoint->state, &error));
 }
 
@@ -122,14 +115,9 @@ void run_checkpoint_begin(struct run *run)
     if (checkpoint->file != NULL) {
         resume(run);
     }
-    checkpoint->last = clock_seconds();
+    checkpoint->last = omp_get_wtime();
     checkpoint->interrupted = &caught;
     catch_signals();
-}
-
-const struct state *run_checkpoint_state(const struct run *run)
-{
-    return run->checkpoint.is_restored ? &run->checkpoint.state : NULL;
 }
 
 /* Put sections for viewing the checkpoint: the cloud, and the field at this step; and the tables of frames.
@@ -185,11 +173,11 @@ static enum status keep(struct run *run, const struct progress *progress, bool i
     struct run_checkpoint *checkpoint = &run->checkpoint;
     bool is_first = !checkpoint->is_there && !checkpoint->is_restored;
     if (!process_speaks() ||
-        (!interrupted && clock_seconds() - checkpoint->last < checkpoint->interval && !is_first)) {
+        (!interrupted && omp_get_wtime() - checkpoint->last < checkpoint->interval && !is_first)) {
         return STATUS_OK;
     }
     checkpoint->status = write_now(run, progress, &checkpoint->error);
-    checkpoint->last = clock_seconds();
+    checkpoint->last = omp_get_wtime();
     if (checkpoint->status != STATUS_OK && !interrupted) {
         run_clear_progress(&run->display);
         if (is_first) { /* fail now rather than when the checkpoint is needed */

@@ -25,21 +25,18 @@ static enum status build(const struct assembly *input, struct run_folds *folds, 
                               .facet_count = input->boundary.count,
                               .facet = input->boundary.node,
                               .ranks = process_ranks()};
-    RETURN_IF_ERROR(assembly_held_faces(input, 1, &folds->held, error));
-    body.held = folds->held;
+    SCRATCH bool *held = NULL;
+    RETURN_IF_ERROR(assembly_held_faces(input, 1, &held, error));
+    body.held = held;
     RETURN_IF_ERROR(NEW_ARRAY(&folds->field, cells->node_count * cells->dim, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&folds->stopped, cells->node_count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&folds->in_contact, cells->node_count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&folds->flat, cells->count, error));
     RETURN_IF_ERROR(ranks_share(body.ranks, cells->node_count, NULL, &folds->node_first, error));
     RETURN_IF_ERROR(folds_build(&body, &folds->folds, error));
     for (int32_t c = 0; c < input->contact_count; c++) {
         if (input->contacts[c].opposite.count > 0) {
-            mark_facets(cells->dim, &input->contacts[c].facets, folds->in_contact);
-            mark_facets(cells->dim, &input->contacts[c].opposite, folds->in_contact);
+            mark_facets(cells->dim, &input->contacts[c].facets, folds->folds.in_contact);
+            mark_facets(cells->dim, &input->contacts[c].opposite, folds->folds.in_contact);
         }
     }
-    folds->folds.in_contact = folds->in_contact;
     return STATUS_OK;
 }
 
@@ -101,8 +98,7 @@ void run_folds_begin(struct run *run)
 void run_folds_free(struct run *run)
 {
     folds_free(&run->folds.folds);
-    FREE_ALL(run->folds.held, run->folds.field, run->folds.node_first, run->folds.stopped,
-             run->folds.in_contact, run->folds.flat);
+    FREE_ALL(run->folds.field, run->folds.node_first);
     support_space_free(&run->folds.space);
 }
 
@@ -113,7 +109,6 @@ static const double near_share = 0.25;
 static void mark_stopped(const struct run *run, bool *stopped)
 {
     const struct solid_system *system = &run->model->system;
-    memset(stopped, 0, (size_t)system->node_count * sizeof *stopped);
     for (int64_t c = 0; c < system->contact_count; c++) {
         const struct contact *contact = &system->contacts[c];
         const struct boundary_averages *nodes = contact_nodes(contact);
@@ -124,20 +119,10 @@ static void mark_stopped(const struct run *run, bool *stopped)
     }
 }
 
-/* The field at the nodes; each process computes a share of it. */
-static void evaluate_field(const struct assembly *input, const double *u, struct run_folds *folds)
-{
-    const struct ranks *ranks = process_ranks();
-    int64_t begin = folds->node_first[ranks_rank(ranks)], end = folds->node_first[ranks_rank(ranks) + 1];
-    int dim = input->cells.dim;
-    field_evaluate(end - begin, input->node_lists.ptr + begin, input->node_lists.idx, input->node_phi, dim, u,
-                   folds->field + begin * dim);
-    ranks_gather(ranks, folds->field, (size_t)dim * sizeof *folds->field, folds->node_first);
-}
-
-/* Mark the cells, of the `count` in folds->flat, in which the field of the parameters u keeps its
+/* Mark the cells, of the `count` in flat, in which the field of the parameters u keeps its
  * orientation; none without radii of supports, or where a support is unfit. */
-static enum status find_upright_cells(struct run *run, int64_t count, const double *u, struct error *error)
+static enum status find_upright_cells(struct run *run, int64_t count, const int32_t *flat, const double *u,
+                                      struct error *error)
 {
     struct run_folds *folds = &run->folds;
     const struct cells *cells = &run->model->assembly.cells;
@@ -151,25 +136,25 @@ static enum status find_upright_cells(struct run *run, int64_t count, const doub
         folds->has_space = true;
     }
     NEW_SCRATCH(double, least, count, error);
-    enum status status =
-        field_least_determinants(&recorded, &folds->space, count, folds->flat, u, least, error);
+    enum status status = field_least_determinants(&recorded, &folds->space, count, flat, u, least, error);
     for (int64_t i = 0; i < count && status == STATUS_OK; i++) {
-        folds->folds.oriented[folds->flat[i]] = least[i] > 0.0;
+        folds->folds.oriented[flat[i]] = least[i] > 0.0;
     }
     return status == STATUS_VERDICT ? STATUS_OK : status;
 }
 
 /* Folds of the map between the nodes that are folds of the field. */
-static struct fold find(struct run *run, const double *u)
+static struct fold find(struct run *run, const double *u, const bool *stopped)
 {
     struct run_folds *folds = &run->folds;
+    TOOL_SCRATCH(run->tool, int32_t, flat, folds->folds.input.cells.count);
     bool *oriented = folds->folds.oriented;
     memset(oriented, 0, (size_t)folds->folds.input.cells.count * sizeof *oriented);
-    struct fold fold = folds_find(&folds->folds, folds->field, folds->stopped);
-    int64_t count = fold.kind == FOLD_CELL ? folds_list_flat(&folds->folds, folds->flat) : 0;
+    struct fold fold = folds_find(&folds->folds, folds->field, stopped);
+    int64_t count = fold.kind == FOLD_CELL ? folds_list_flat(&folds->folds, flat) : 0;
     if (count > 0) {
-        TOOL_TRY(run->tool, find_upright_cells(run, count, u, &error));
-        fold = folds_find(&folds->folds, folds->field, folds->stopped);
+        TOOL_TRY(run->tool, find_upright_cells(run, count, flat, u, &error));
+        fold = folds_find(&folds->folds, folds->field, stopped);
     }
     return fold;
 }
@@ -177,9 +162,17 @@ static struct fold find(struct run *run, const double *u)
 void run_folds_check(struct run *run, const double *u, double time, bool is_frame)
 {
     struct run_folds *folds = &run->folds;
-    evaluate_field(&run->model->assembly, u, folds);
-    mark_stopped(run, folds->stopped);
-    struct fold fold = find(run, u);
+    const struct assembly *input = &run->model->assembly;
+    const struct ranks *ranks = process_ranks();
+    int64_t begin = folds->node_first[ranks_rank(ranks)], end = folds->node_first[ranks_rank(ranks) + 1];
+    int dim = input->cells.dim;
+    /* The field at the nodes: each process computes a share of it. */
+    field_evaluate(end - begin, input->node_lists.ptr + begin, input->node_lists.idx, input->node_phi, dim, u,
+                   folds->field + begin * dim);
+    ranks_gather(ranks, folds->field, (size_t)dim * sizeof *folds->field, folds->node_first);
+    TOOL_SCRATCH(run->tool, bool, stopped, input->cells.node_count);
+    mark_stopped(run, stopped);
+    struct fold fold = find(run, u, stopped);
     if (is_frame && fold.kind == FOLD_NONE) {
         TOOL_TRY(run->tool, folds_find_overlaps(&folds->folds, folds->field, &fold, &error));
     }
@@ -237,12 +230,11 @@ static const char *node_text(const struct run *run, int64_t node, char text[96])
 }
 
 /* Whether a contact of the scene lets all of the boundary touch itself. */
-static bool touches_itself(const struct scene *scene)
+static bool touches_itself(const struct assembly *input)
 {
     bool whole = false;
-    for (int64_t c = 0; c < scene->contact_count; c++) {
-        whole = whole ||
-                (model_is_whole(&scene->contacts[c].facets) && model_is_whole(&scene->contacts[c].against));
+    for (int64_t c = 0; c < input->contact_count; c++) {
+        whole = whole || (input->contacts[c].whole && input->contacts[c].opposite.count > 0);
     }
     return whole;
 }
@@ -278,7 +270,7 @@ void run_folds_describe(const struct run *run, char *text, size_t size)
              since ? "from" : "at", when_text(run, folds->since, when), since ? " on" : "",
              words[fold->kind].before, one, POINT_TEXT(run->scene->dim, fold->place),
              words[fold->kind].behind, other,
-             words[fold->kind].touches && !touches_itself(run->scene)
+             words[fold->kind].touches && !touches_itself(&run->model->assembly)
                  ? "let it touch itself ([contact] with facets = *, against = *), "
                  : "");
 }

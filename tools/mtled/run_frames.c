@@ -21,13 +21,6 @@ static double count_frames(const struct scene *scene)
                                   : (double)output->frames;
 }
 
-/* Tables of points and shape functions are not passed on. */
-static bool is_passed_on(const char *name)
-{
-    enum section_stage stage = section_stage(name);
-    return stage < MADE_WITH_POINTS || stage > MADE_WITH_SHAPES;
-}
-
 void run_frames_check(const struct run *run)
 {
     const struct scene_output *output = &run->scene->output;
@@ -59,7 +52,9 @@ static enum status put_sections(struct run *run, bool whole, struct error *error
         if (!whole && run_is_of_frames(name)) {
             break;
         }
-        if (is_passed_on(name)) {
+        enum section_stage stage = section_stage(name);
+        /* Tables of points and shape functions are not passed on. */
+        if (stage < MADE_WITH_POINTS || stage > MADE_WITH_SHAPES) {
             RETURN_IF_ERROR(stream_writer_put(&frames->writer, stream, frames->written, error));
         }
     }

@@ -58,25 +58,6 @@ bool run_is_of_frames(const char *name)
     return frame_of(name, &length) != FRAME_NONE;
 }
 
-/* P F^T / J */
-static void cauchy_stress(const double F[9], const double P[9], double stress[9])
-{
-    double J = determinant(F);
-    for (int k = 0; k < 9; k++) {
-        const double *p = P + k / 3 * 3, *f = F + k % 3 * 3;
-        stress[k] = (p[0] * f[0] + p[1] * f[1] + p[2] * f[2]) / J;
-    }
-}
-
-/* (F^T F - 1) / 2 */
-static void green_lagrange_strain(const double F[9], double strain[9])
-{
-    for (int k = 0; k < 9; k++) {
-        int i = k / 3, j = k % 3;
-        strain[k] = 0.5 * (F[i] * F[j] + F[3 + i] * F[3 + j] + F[6 + i] * F[6 + j] - (i == j));
-    }
-}
-
 /* Put the symmetric components of tensors[points * 9] as section `name`. */
 static void put_tensors(const struct run *run, const struct instant *instant, const char *name,
                         const char *kind, const double *tensors)
@@ -130,10 +111,14 @@ static void put_point_fields(struct run *run, const struct instant *instant)
     if (output->fibre) {
         put_fibres(run, instant, F);
     }
-    for (int64_t q = 0; q < points; q++) {
-        double *f = F + 9 * q, *p = P + 9 * q, stress[9], strain[9];
-        cauchy_stress(f, p, stress);
-        green_lagrange_strain(f, strain);
+    for (int64_t q = 0; q < points;
+         q++) { /* Cauchy stress P F^T / J, Green-Lagrange strain (F^T F - 1) / 2 */
+        double *f = F + 9 * q, *p = P + 9 * q, J = determinant(f), stress[9], strain[9];
+        for (int k = 0; k < 9; k++) {
+            int i = k / 3, j = k % 3;
+            stress[k] = (p[3 * i] * f[3 * j] + p[3 * i + 1] * f[3 * j + 1] + p[3 * i + 2] * f[3 * j + 2]) / J;
+            strain[k] = 0.5 * (f[i] * f[j] + f[3 + i] * f[3 + j] + f[6 + i] * f[6 + j] - (i == j));
+        }
         memcpy(f, strain, sizeof strain);
         memcpy(p, stress, sizeof stress);
         pressure[q] = (0.0 - stress[0] - stress[4] - stress[8]) / 3.0;

@@ -228,17 +228,18 @@ static void run_quasi_static(struct run *run)
                                       .frame = in_steps || in_time ? end_step : run_put_frame,
                                       .progress = run_progress,
                                       .context = run,
-                                      .restored = run_checkpoint_state(run)};
+                                      .restored =
+                                          run->checkpoint.is_restored ? &run->checkpoint.state : NULL};
     struct statics_report report;
     struct error error;
     run_check_rigid_modes(run);
     if (in_time) {
         tool_check(run->tool, body_estimate_time_error(body, &error), &error);
     }
-    double started = clock_seconds();
+    double started = omp_get_wtime();
     enum status status = (solver->method == SCENE_NEWTON ? newton_run : relaxation_run)(
         &run->model->system, &options, run->u, run->model->row_force, &report, &error);
-    run->solve_seconds += clock_seconds() - started;
+    run->solve_seconds += omp_get_wtime() - started;
     run_clear_progress(&run->display);
     tool_check(run->tool, status, &error);
     run->last_good = report.load;
@@ -315,20 +316,6 @@ static void judge_dynamic(struct run *run, const struct dynamics_report *report)
     }
 }
 
-/* Put the log as section `energy`. */
-static void put_energy(const struct run *run, const struct energy_log *log)
-{
-    _Static_assert(sizeof(struct energy) == ENERGY_COLUMNS * sizeof(double), "a row of numbers");
-    double *values = run_new_values(run, log->count * ENERGY_COLUMNS);
-    memcpy(values, log->rows, (size_t)log->count * sizeof *log->rows);
-    run_put(run, "energy", log->count, ENERGY_COLUMNS,
-            run->scene->dim == 2 ? "unit=s,J/m,J/m,J/m,J/m,J/m,1 "
-                                   "cols=time,kinetic,internal,contact,work,dissipated,error"
-                                 : "unit=s,J,J,J,J,J,1 "
-                                   "cols=time,kinetic,internal,contact,work,dissipated,error",
-            values);
-}
-
 static void run_dynamic(struct run *run)
 {
     const struct scene_solver *solver = &run->scene->solver;
@@ -343,7 +330,7 @@ static void run_dynamic(struct run *run)
         .progress = run_progress,
         .context = run,
         .interrupted = run->checkpoint.interrupted,
-        .restored = run_checkpoint_state(run)};
+        .restored = run->checkpoint.is_restored ? &run->checkpoint.state : NULL};
     struct dynamics_report report;
     struct energy_log log = {0};
     struct error error;
@@ -355,14 +342,22 @@ static void run_dynamic(struct run *run)
     if (options.frame_interval > 0.0 && options.restored == NULL) {
         run_put_frame(run, 0, 0.0, run->u);
     }
-    double started = clock_seconds();
+    double started = omp_get_wtime();
     enum status status = dynamics_run(&run->model->system, &options, run->u, velocity, run->model->row_force,
                                       output->energy ? &log : NULL, &report, &error);
-    run->solve_seconds += clock_seconds() - started;
+    run->solve_seconds += omp_get_wtime() - started;
     run_clear_progress(&run->display);
     tool_check(run->tool, status, &error);
     if (output->energy) {
-        put_energy(run, &log);
+        _Static_assert(sizeof(struct energy) == ENERGY_COLUMNS * sizeof(double), "a row of numbers");
+        double *values = run_new_values(run, log.count * ENERGY_COLUMNS);
+        memcpy(values, log.rows, (size_t)log.count * sizeof *log.rows);
+        run_put(run, "energy", log.count, ENERGY_COLUMNS,
+                run->scene->dim == 2 ? "unit=s,J/m,J/m,J/m,J/m,J/m,1 "
+                                       "cols=time,kinetic,internal,contact,work,dissipated,error"
+                                     : "unit=s,J,J,J,J,J,1 "
+                                       "cols=time,kinetic,internal,contact,work,dissipated,error",
+                values);
     }
     run->last_good = report.last_good;
     run->evaluations = report.force_evaluations;

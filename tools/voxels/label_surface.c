@@ -203,7 +203,7 @@ void label_surface_write(const struct tool *tool, const struct label_cells *mesh
     if (surface.count == 0) {
         tool_fail(tool, STATUS_INPUT, "--surface: these labels do not touch");
     }
-    tool_print_to(tool, &output, tool->output);
+    TOOL_TRY(tool, output_open(&output, tool->output, false, &error));
     print_surface(tool, output.file, &surface);
-    tool_printed(tool, &output);
+    TOOL_TRY(tool, output_end(&output, STATUS_OK, &error));
 }

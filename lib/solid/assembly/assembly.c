@@ -27,7 +27,7 @@ static enum status find_junctions(const struct assembly *input, int kinds, int l
 /* (*part)[cells.count], to be freed: of cells that have a node on a junction of prescribed and free boundary
  * within a smooth side the number of one of these nodes; -1: of others. Of several nodes of a cell it is that
  * which has the fewest cells so far. */
-static enum status assembly_junction_cells(const struct assembly *input, int32_t **part, struct error *error)
+static enum status junction_cells(const struct assembly *input, int32_t **part, struct error *error)
 {
     const struct cells *cells = &input->cells;
     int corners = cells->dim + 1;
@@ -45,23 +45,6 @@ static enum status assembly_junction_cells(const struct assembly *input, int32_t
         if (least >= 0) {
             size[least]++;
         }
-    }
-    return STATUS_OK;
-}
-
-/* (*at_edge)[node_count], to be freed: the nodes at edges between clamped and free sides, and at re-entrant
- * edges (2D: corners); NULL: none. An edge between a clamped side and one that slides is not singular: it may
- * be at a plane of symmetry. A side that may come into contact counts as free: the treatment of edges does
- * not change a uniform pressure.
- */
-static enum status assembly_edge_nodes(const struct assembly *input, bool **at_edge, struct error *error)
-{
-    *at_edge = NULL;
-    RETURN_IF_ERROR(find_junctions(input, BOUNDARY_JUNCTION_SHARP | BOUNDARY_REENTRANT, input->cells.dim,
-                                   at_edge, error));
-    if (memchr(*at_edge, true, (size_t)input->cells.node_count) == NULL) {
-        free(*at_edge);
-        *at_edge = NULL;
     }
     return STATUS_OK;
 }
@@ -92,12 +75,18 @@ static enum status build_body(const struct assembly *input, struct solid_system 
     SCRATCH bool *at_edge = NULL;
     SCRATCH int32_t *junction = NULL;
     if (input->smoothed && assembly_holds_averages(input)) {
-        RETURN_IF_ERROR(assembly_junction_cells(input, &junction, error));
-        RETURN_IF_ERROR(assembly_edge_nodes(input, &at_edge, error));
+        RETURN_IF_ERROR(junction_cells(input, &junction, error));
+        /* Nodes at edges between clamped and free sides, and at re-entrant edges (2D: corners). An edge
+         * between a clamped side and one that slides is not singular: it may be at a plane of symmetry. A
+         * side that may come into contact counts as free: the treatment of edges does not change a uniform
+         * pressure. */
+        RETURN_IF_ERROR(find_junctions(input, BOUNDARY_JUNCTION_SHARP | BOUNDARY_REENTRANT, input->cells.dim,
+                                       &at_edge, error));
     }
     if (!input->pointwise_volume) {
         RETURN_IF_ERROR(list_vertices(input, &vertex, &coordinate, error));
     }
+    bool any_edge = at_edge != NULL && memchr(at_edge, true, (size_t)input->cells.node_count) != NULL;
     struct smoothed_cells_input smoothed = {.x = input->cells.x,
                                             .cell_node = input->cells.node,
                                             .faces = &input->faces,
@@ -125,7 +114,7 @@ static enum status build_body(const struct assembly *input, struct solid_system 
                               .vertex = vertex,
                               .barycentric = coordinate,
                               .junction = junction,
-                              .at_edge = at_edge,
+                              .at_edge = any_edge ? at_edge : NULL,
                               .smoothed = input->smoothed ? &smoothed : NULL,
                               .ranks = input->ranks};
     return body_build(&body, &system->body, error);

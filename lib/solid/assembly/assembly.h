@@ -121,18 +121,13 @@ void assembly_complete(struct assembly *input);
 MUST_CHECK enum status assembly_build(struct assembly *input, struct solid_system *system, struct error *note,
                                       struct error *error);
 
-/* Steps of assembly_build, in their own files: displacements, measured points, loads of a body that is built,
+/* Steps of assembly_build, in their own files: displacements; measured points, loads of a body that is built,
  * contacts, and supports with membranes. */
 MUST_CHECK enum status assembly_add_conditions(const struct assembly *input, struct solid_system *system,
                                                struct error *note, struct error *error);
-MUST_CHECK enum status assembly_add_points(const struct assembly *input, struct solid_system *system,
-                                           struct error *error);
-MUST_CHECK enum status assembly_add_loads(const struct assembly *input, struct solid_system *system,
-                                          struct error *error);
-MUST_CHECK enum status assembly_add_contacts(const struct assembly *input, struct solid_system *system,
-                                             struct error *error);
-MUST_CHECK enum status assembly_add_supports(const struct assembly *input, struct solid_system *system,
-                                             struct error *error);
+typedef enum status assembly_step(const struct assembly *input, struct solid_system *system,
+                                  struct error *error);
+assembly_step assembly_add_points, assembly_add_loads, assembly_add_contacts, assembly_add_supports;
 
 /* fail() at a row of measured points: "FILE:LINE: [displacement NAME]: points TABLE:LINE: at PLACE: what". */
 enum status condition_fail_at(const struct condition *condition, int64_t row, struct error *error,

@@ -10,26 +10,18 @@
  * the forces on clamped blocks change by .2 %. */
 static const double constraint_penalty_factor = 10.0;
 
-/* Append a constraint penalty: about the stiffness of a layer of cells, times the area of the quadrature
- * point. */
-static enum status add_penalty(const struct prescription *p, const struct boundary_averages *points,
-                               int64_t a, const double *direction, double target, struct error *error)
-{
-    struct average average = average_of_boundary(points, a);
-    double unit = points->area[a] / p->layer;
-    return system_append_penalty(p->system, &average, direction, target, p->condition->curve, p->number,
-                                 points->node[a], p->modulus * unit,
-                                 p->condition->kind == CONDITION_NORMAL ? unit : 0.0, error);
-}
-
 static enum status add_row(const struct prescription *p, const struct boundary_averages *averages, int64_t a,
                            const double *direction, double target, struct error *error)
 {
     int64_t at = averages->ptr[a];
     static const double one = 1.0;
     struct constraint_rows *rows = &p->system->rows;
-    if (p->penalties) {
-        return add_penalty(p, averages, a, direction, target, error);
+    if (p->penalties) { /* about the stiffness of a layer of cells, times the area of the quadrature point */
+        struct average average = average_of_boundary(averages, a);
+        double unit = averages->area[a] / p->layer;
+        return system_append_penalty(p->system, &average, direction, target, p->condition->curve, p->number,
+                                     averages->node[a], p->modulus * unit,
+                                     p->condition->kind == CONDITION_NORMAL ? unit : 0.0, error);
     }
     if (p->input->direct) {
         /* With a weight function that almost interpolates, the parameter equals the value. */

@@ -78,30 +78,24 @@ static enum status add_gravity(const struct assembly *input, struct solid_system
     return STATUS_OK;
 }
 
-static enum status add_traction(const struct assembly *input, const struct load *load,
-                                struct solid_system *system, struct error *error)
+/* A traction on facets, or a force on each node. */
+static enum status add_dead_load(const struct assembly *input, const struct load *load,
+                                 struct solid_system *system, struct error *error)
 {
     FREED_BY(boundary_averages_free) struct boundary_averages averages = {0};
-    double *force;
-    RETURN_IF_ERROR(boundary_averages_build(&input->face_table, &load->facets, &averages, error));
+    const struct neighbours *lists = &input->node_lists;
+    double *force, amount[3];
+    RETURN_IF_ERROR(load->kind == LOAD_TRACTION
+                        ? boundary_averages_build(&input->face_table, &load->facets, &averages, error)
+                        : STATUS_OK);
     RETURN_IF_ERROR(new_load(system, load->curve, &force, error));
     for (int64_t a = 0; a < averages.count; a++) {
         struct average average = average_of_boundary(&averages, a);
-        double amount[3];
         for (int k = 0; k < system->dim; k++) {
             amount[k] = averages.area[a] * load->components[k];
         }
         average_spread(&average, system->dim, amount, force);
     }
-    return STATUS_OK;
-}
-
-static enum status add_force(const struct assembly *input, const struct load *load,
-                             struct solid_system *system, struct error *error)
-{
-    const struct neighbours *lists = &input->node_lists;
-    double *force;
-    RETURN_IF_ERROR(new_load(system, load->curve, &force, error));
     for (int64_t n = 0; n < load->node_count; n++) {
         int64_t at = lists->ptr[load->nodes[n]];
         struct average field = {lists->ptr[load->nodes[n] + 1] - at, lists->idx + at, input->node_phi + at};
@@ -138,14 +132,13 @@ static enum status add_pressure(const struct assembly *input, const struct load 
 
 enum status assembly_add_loads(const struct assembly *input, struct solid_system *system, struct error *error)
 {
-    static enum status (*const add[])(const struct assembly *, const struct load *, struct solid_system *,
-                                      struct error *) = {
-        [LOAD_PRESSURE] = add_pressure, [LOAD_TRACTION] = add_traction, [LOAD_FORCE] = add_force};
     if (vector_dot(3, input->gravity, input->gravity) > 0.0) {
         RETURN_IF_ERROR(add_gravity(input, system, error));
     }
     for (int64_t i = 0; i < input->load_count; i++) {
-        RETURN_IF_ERROR(add[input->loads[i].kind](input, &input->loads[i], system, error));
+        const struct load *load = &input->loads[i];
+        RETURN_IF_ERROR(
+            (load->kind == LOAD_PRESSURE ? add_pressure : add_dead_load)(input, load, system, error));
     }
     return STATUS_OK;
 }

@@ -188,18 +188,6 @@ static enum status check_rows(const struct point_condition *p, int64_t first, st
     return STATUS_OK;
 }
 
-static enum status add_condition(struct point_condition *p, struct error *error)
-{
-    int64_t first = p->system->rows.count;
-    RETURN_IF_ERROR(compare_rows(p, error));
-    RETURN_IF_ERROR(measure_nodes(p, error));
-    RETURN_IF_ERROR(set_energy(p, error));
-    for (int64_t i = 0; i < p->measured->count; i++) {
-        RETURN_IF_ERROR(add_point(p, i, error));
-    }
-    return p->system->rows.count > first ? check_rows(p, first, error) : STATUS_OK;
-}
-
 static void point_condition_free(struct point_condition *p)
 {
     FREE_ALL(p->volume, p->shear);
@@ -216,7 +204,14 @@ enum status assembly_add_points(const struct assembly *input, struct solid_syste
                                         .measured = &input->conditions[i].measured,
                                         .system = system,
                                         .number = (int32_t)i};
-            RETURN_IF_ERROR(add_condition(&p, error));
+            int64_t first = system->rows.count;
+            RETURN_IF_ERROR(compare_rows(&p, error));
+            RETURN_IF_ERROR(measure_nodes(&p, error));
+            RETURN_IF_ERROR(set_energy(&p, error));
+            for (int64_t k = 0; k < p.measured->count; k++) {
+                RETURN_IF_ERROR(add_point(&p, k, error));
+            }
+            RETURN_IF_ERROR(system->rows.count > first ? check_rows(&p, first, error) : STATUS_OK);
         }
     }
     return STATUS_OK;

@@ -82,16 +82,6 @@ static enum status build_rings(struct folds *folds, struct error *error)
     return list_cells(folds, error);
 }
 
-static enum status mark_held(struct folds *folds, struct error *error)
-{
-    const struct fold_input *input = &folds->input;
-    RETURN_IF_ERROR(NEW_ARRAY(&folds->is_held, input->cells.node_count, error));
-    for (int64_t i = 0; i < input->facet_count * input->cells.dim; i++) {
-        folds->is_held[input->facet[i]] |= input->held[i / input->cells.dim];
-    }
-    return STATUS_OK;
-}
-
 /* The surfaces of the boundary, facets that have nodes together. */
 static enum status find_surfaces(struct folds *folds, struct error *error)
 {
@@ -111,14 +101,6 @@ static void find_middle(const struct folds *folds, const double *x, int64_t cell
 {
     int dim = folds->input.cells.dim, corners = dim + 1;
     vector_middle(dim, x, corners, folds->input.cells.node + cell * corners, middle);
-}
-
-/* Name the first cell that is within another one. */
-static void name_cell(const struct folds *folds, int64_t cell, struct fold *fold)
-{
-    fold->kind = FOLD_WITHIN;
-    fold->cell = cell;
-    find_middle(folds, folds->input.cells.x, cell, fold->place);
 }
 
 /* Whether a cell contains a point, barycentric coordinates being larger than
@@ -141,13 +123,6 @@ static bool contains(const struct folds *folds, int64_t cell, const double *poin
         }
     }
     return true;
-}
-
-/* The box around a cell. */
-static struct box box_around(const struct folds *folds, int64_t cell)
-{
-    int dim = folds->input.cells.dim;
-    return box_of_nodes(dim, folds->y, folds->input.cells.node + cell * (dim + 1), dim + 1);
 }
 
 /* Whether two cells have a node together. */
@@ -190,7 +165,7 @@ static enum status look_for_overlaps(struct folds *folds, bool of_bodies, struct
     }
     RETURN_IF_ERROR(point_grid_build(&grid, dim, count, middle, radius, error));
     for (int64_t c = 0; c < count; c++) {
-        struct box box = box_around(folds, c);
+        struct box box = box_of_nodes(dim, folds->y, folds->input.cells.node + c * (dim + 1), dim + 1);
         near.count = 0;
         RETURN_IF_ERROR(point_grid_query_box(&grid, box.low, box.high, 1.0, &near, error));
         for (int64_t i = 0; i < near.count; i++) {
@@ -199,7 +174,9 @@ static enum status look_for_overlaps(struct folds *folds, bool of_bodies, struct
                 folds->part[other] != folds->part[c] || (!of_bodies && !are_neighbours(folds, c, other));
             if (apart && contains(folds, c, middle + (int64_t)other * dim) && !is_left_out(folds, c) &&
                 !is_left_out(folds, other) && fold->count++ == 0) {
-                name_cell(folds, other, fold);
+                fold->kind = FOLD_WITHIN;
+                fold->cell = other; /* the first one */
+                find_middle(folds, folds->input.cells.x, other, fold->place);
             }
         }
     }
@@ -220,10 +197,14 @@ enum status folds_build(const struct fold_input *input, struct folds *folds, str
     folds->extent = box_diagonal(&box);
     RETURN_IF_ERROR(NEW_ARRAY(&folds->y, size, error));
     RETURN_IF_ERROR(NEW_ARRAY(&folds->oriented, input->cells.count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&folds->in_contact, input->cells.node_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&folds->boxes, input->facet_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&folds->found, ranks_count(input->ranks), error));
     RETURN_IF_ERROR(build_rings(folds, error));
-    RETURN_IF_ERROR(mark_held(folds, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&folds->is_held, input->cells.node_count, error));
+    for (int64_t i = 0; i < input->facet_count * input->cells.dim; i++) {
+        folds->is_held[input->facet[i]] |= input->held[i / input->cells.dim];
+    }
     RETURN_IF_ERROR(find_surfaces(folds, error));
     RETURN_IF_ERROR(NEW_ARRAY(&folds->part, input->cells.count, error));
     RETURN_IF_ERROR(cells_parts(&input->cells, folds->part, &bodies, error));
@@ -249,7 +230,8 @@ enum status folds_find_overlaps(struct folds *folds, const double *u, struct fol
 
 void folds_free(struct folds *folds)
 {
-    FREE_ALL(folds->rings, folds->ring_ptr, folds->ring_cell, folds->oriented, folds->is_held, folds->part,
-             folds->surface, folds->enclosed, folds->y, folds->boxes, folds->found);
+    FREE_ALL(folds->rings, folds->ring_ptr, folds->ring_cell, folds->oriented, folds->in_contact,
+             folds->is_held, folds->part, folds->surface, folds->enclosed, folds->y, folds->boxes,
+             folds->found);
     *folds = (struct folds){0};
 }

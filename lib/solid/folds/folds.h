@@ -64,9 +64,9 @@ struct fold_ring {
 
 struct folds {
     struct fold_input input; /* the caller's arrays, which must outlive it */
-    const bool *in_contact;  /* node_count, the caller's: nodes of facets that a contact keeps from passing
-                             through each other, from a share of their size on; those that meet may do so by a
-                             twentieth; NULL: none */
+    bool *in_contact; /* node_count, the caller's to set: nodes of facets that a contact keeps from passing
+                      through each other, from a share of their size on; those that meet may do so by a
+                      twentieth */
     struct fold_ring *rings; /* ring_count, ordered by their nodes */
     int64_t ring_count;
     int64_t *ring_ptr;  /* ring_count + 1: the cells around each, */

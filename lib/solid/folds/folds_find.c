@@ -175,8 +175,7 @@ static double most_angle(const struct folds *folds, int64_t r)
         const int32_t *node = folds->ring_cell + i * (dim + 1);
         changed += fabs(angle_around(dim, folds->y, node) - angle_around(dim, folds->input.cells.x, node));
     }
-    bool closed =
-        in_contact != NULL && in_contact[ring->node[0]] && (ring->node[1] < 0 || in_contact[ring->node[1]]);
+    bool closed = in_contact[ring->node[0]] && (ring->node[1] < 0 || in_contact[ring->node[1]]);
     return full_turn * (1.0 + 1e-6) +
            (closed ? FOLD_BEYOND_FACET : fmin(FOLD_BEYOND_FACET, uncertain_share * changed));
 }
@@ -246,7 +245,7 @@ static double apart_across_edges(const struct folds *folds, int64_t f, int64_t g
 static bool is_in_contact(const struct folds *folds, int64_t f)
 {
     bool any = false;
-    for (int k = 0; k < folds->input.cells.dim && folds->in_contact != NULL; k++) {
+    for (int k = 0; k < folds->input.cells.dim; k++) {
         any = any || folds->in_contact[folds->input.facet[f * folds->input.cells.dim + k]];
     }
     return any;
@@ -265,16 +264,6 @@ static bool are_deep(const struct folds *folds, int64_t f, int64_t g)
     depth = folds->input.cells.dim == 3 ? fmin(depth, apart_across_edges(folds, f, g)) : depth;
     bool in_contact = is_in_contact(folds, f) && is_in_contact(folds, g);
     return depth > (in_contact ? CONTACT_MOST_DEPTH : FOLD_BEYOND_FACET) * fmax(width[0], width[1]);
-}
-
-/* Fill folds->boxes, ascending along the first axis. */
-static void sort_boxes(struct folds *folds)
-{
-    int64_t count = folds->input.facet_count;
-    for (int64_t f = 0; f < count; f++) {
-        folds->boxes[f].facet.item = f;
-    }
-    facet_boxes_sort(folds->input.cells.dim, folds->y, folds->input.facet, count, folds->boxes);
 }
 
 /* Search the boxes [begin, end) and those behind them for facets that cross. */
@@ -371,7 +360,11 @@ struct fold folds_find(struct folds *folds, const double *u, const bool *stopped
         fold = search(folds, folds->ring_count, search_rings);
     }
     if (fold.kind == FOLD_NONE && folds->at_rest.kind == FOLD_NONE) {
-        sort_boxes(folds);
+        int64_t count = folds->input.facet_count;
+        for (int64_t f = 0; f < count; f++) {
+            folds->boxes[f].facet.item = f;
+        }
+        facet_boxes_sort(folds->input.cells.dim, folds->y, folds->input.facet, count, folds->boxes);
         fold = search(folds, folds->input.facet_count, search_boxes);
         if (fold.kind == FOLD_NONE) {
             find_everted(folds, &fold);

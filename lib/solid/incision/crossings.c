@@ -71,24 +71,15 @@ static enum status add_pair(struct crossings *list, const double *value, bool al
     return STATUS_OK;
 }
 
-/* The edges of a face on the sheet whose extents have different signs. Of a face with all nodes on the
- * border, as in a corner of it, all edges: where one is within, a node is put that can be doubled. */
-static enum status add_face(struct crossings *list, int dim, const double *extent, const int32_t *node,
-                            struct error *error)
-{
-    bool on_border = dim == 3 && extent[node[0]] == 0 && extent[node[1]] == 0 && extent[node[2]] == 0;
-    for (int k = 0; k < dim; k++) {
-        RETURN_IF_ERROR(add_pair(list, extent, on_border, node[k], node[(k + 1) % dim], error));
-    }
-    return STATUS_OK;
-}
-
+/* The edges of cells whose heights have different signs; and of faces on the sheet, whose extents have. Of a
+ * face with all nodes on the border, as in a corner of it, all edges: where one is within, a node is put that
+ * can be doubled. */
 static enum status list_pairs(const struct cut *cut, enum level level, struct crossings *list,
                               struct error *error)
 {
     const struct division *body = cut->body;
     const double *value = cut->value[level];
-    int corners = body->dim + 1;
+    int dim = body->dim, corners = dim + 1;
     for (int64_t c = 0; c < body->cell_count && level == LEVEL_HEIGHT; c++) {
         const int32_t *node = body->node + c * corners;
         for (int i = 0; i < corners * corners; i++) {
@@ -100,7 +91,11 @@ static enum status list_pairs(const struct cut *cut, enum level level, struct cr
     for (int64_t f = 0, end; f < cut->face_count && level == LEVEL_EXTENT; f = end) {
         end = keyed_end(cut->face_count, cut->face, f);
         if (end - f == 2 && cut_parts(cut, f)) {
-            RETURN_IF_ERROR(add_face(list, body->dim, value, cut->face[f].key, error));
+            const int32_t *node = cut->face[f].key;
+            bool on_border = dim == 3 && value[node[0]] == 0 && value[node[1]] == 0 && value[node[2]] == 0;
+            for (int k = 0; k < dim; k++) {
+                RETURN_IF_ERROR(add_pair(list, value, on_border, node[k], node[(k + 1) % dim], error));
+            }
         }
     }
     qsort(list->item, (size_t)list->count, sizeof *list->item, split_compare);

@@ -323,18 +323,6 @@ static enum status add_lips(struct opening *opening, int32_t front, int32_t back
     return STATUS_OK;
 }
 
-/* Open the faces within the border. */
-static enum status cut_open(struct cut *cut, int32_t front, int32_t back, int64_t *count, struct error *error)
-{
-    FREED_BY(opening_free) struct opening opening = {.cut = cut};
-    *count = 0;
-    RETURN_IF_ERROR(mark_opened(&opening, count, error));
-    RETURN_IF_ERROR(join_corners(&opening, error));
-    RETURN_IF_ERROR(double_nodes(&opening, error));
-    carry_facets(&opening);
-    return add_lips(&opening, front, back, error);
-}
-
 /* ---- the cut ---- */
 
 /* Split the edges where the level is 0; the nodes there are on it. */
@@ -370,5 +358,11 @@ enum status incision_cut(struct division *body, const struct sheet *sheet, int32
     RETURN_IF_ERROR(cut_evaluate(&cut, error));
     RETURN_IF_ERROR(divide_at(&cut, LEVEL_HEIGHT, error));
     RETURN_IF_ERROR(divide_at(&cut, LEVEL_EXTENT, error));
-    return cut_open(&cut, front, back, opened, error);
+    FREED_BY(opening_free) struct opening opening = {.cut = &cut};
+    *opened = 0;
+    RETURN_IF_ERROR(mark_opened(&opening, opened, error));
+    RETURN_IF_ERROR(join_corners(&opening, error));
+    RETURN_IF_ERROR(double_nodes(&opening, error));
+    carry_facets(&opening);
+    return add_lips(&opening, front, back, error);
 }

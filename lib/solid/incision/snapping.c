@@ -44,11 +44,6 @@ static uint64_t mix(uint64_t number)
     return number ^ number >> 31;
 }
 
-static void surfaces_free(struct surfaces *surfaces)
-{
-    FREE_ALL(surfaces->node, surfaces->label, surfaces->ptr, surfaces->idx);
-}
-
 /* The groups of the facets with the nodes key, as one number. */
 static uint64_t label_of_groups(const struct division *body, int64_t count, const struct keyed *facets,
                                 const int32_t key[3])
@@ -215,8 +210,9 @@ static enum status snap_node(const struct snapping *snapping, int32_t node, int6
 
 static void snapping_free(struct snapping *snapping)
 {
-    surfaces_free(&snapping->surfaces);
-    FREE_ALL(snapping->cell_ptr, snapping->cell_idx);
+    struct surfaces *surfaces = &snapping->surfaces;
+    FREE_ALL(surfaces->node, surfaces->label, surfaces->ptr, surfaces->idx, snapping->cell_ptr,
+             snapping->cell_idx);
 }
 
 enum status cut_snap(struct cut *cut, enum level level, const struct crossings *crossings,

@@ -2,12 +2,12 @@
 
 #include "approx/cells/cells.h"
 #include "approx/support/support.h"
-#include "base/clock.h"
 #include "base/memory.h"
 #include "base/vector.h"
 #include "solid/contact/contact_between.h"
 #include "solid/system/condition.h"
 
+#include <omp.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -276,9 +276,9 @@ static void negate(const struct solid_system *system, double *force)
 
 void system_resist(struct solid_system *system, const double *u, double *force)
 {
-    double started = clock_seconds();
+    double started = omp_get_wtime();
     (void)body_own_force(&system->body, u, force);
-    system->cost.force += clock_seconds() - started;
+    system->cost.force += omp_get_wtime() - started;
     negate(system, force);
     system_add_penalties(system, u, force);
     (void)system_pull_membranes(system, u, force);
@@ -288,17 +288,17 @@ void system_resist(struct solid_system *system, const double *u, double *force)
 
 struct deformation system_smooth_residual(struct solid_system *system, const double *u, double *residual)
 {
-    double started = clock_seconds();
+    double started = omp_get_wtime();
     struct deformation deformation = body_own_force(&system->body, u, residual);
-    double forced = clock_seconds();
+    double forced = omp_get_wtime();
     negate(system, residual);
     system_add_loads(system, u, residual);
     (void)system_pull_membranes(system, u, residual);
-    double loaded = clock_seconds();
+    double loaded = omp_get_wtime();
     system_add_penalties(system, u, residual);
-    double held = clock_seconds();
+    double held = omp_get_wtime();
     body_gather(&system->body, system->dim, residual);
-    system->cost.force += forced - started + clock_seconds() - held;
+    system->cost.force += forced - started + omp_get_wtime() - held;
     system->cost.loads += loaded - forced;
     system->cost.constraints += held - loaded;
     return deformation;
@@ -306,12 +306,12 @@ struct deformation system_smooth_residual(struct solid_system *system, const dou
 
 void system_add_contacts(struct solid_system *system, const double *u, double *force)
 {
-    double started = clock_seconds();
+    double started = omp_get_wtime();
     for (int64_t c = 0; c < system->contact_count; c++) {
         contact_move(&system->contacts[c], system->factor);
         contact_force(&system->contacts[c], u, force);
     }
-    system->cost.contact += clock_seconds() - started;
+    system->cost.contact += omp_get_wtime() - started;
 }
 
 struct deformation system_residual(struct solid_system *system, const double *u, double *residual)

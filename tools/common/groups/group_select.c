@@ -9,13 +9,6 @@
 enum joint { JOIN_OR, JOIN_AND, JOIN_WITHOUT, JOINTS };
 static const char *const joints[JOINTS] = {"or", "and", "without"};
 
-static void combine(enum joint joint, int64_t count, const bool *term, bool *chosen)
-{
-    for (int64_t i = 0; i < count; i++) {
-        chosen[i] = joint == JOIN_OR ? chosen[i] || term[i] : chosen[i] && term[i] == (joint == JOIN_AND);
-    }
-}
-
 static enum joint joint_of(const char *word)
 {
     int joint = 0;
@@ -61,7 +54,10 @@ static enum status evaluate(const struct group_body *body, enum group_kind kind,
             RETURN_IF_ERROR(grow(body, kind, word, chosen, error));
         } else if (wants_term) {
             RETURN_IF_ERROR(group_term(body, kind, word, unit, term, error));
-            combine(joint, count, term, chosen);
+            for (int64_t i = 0; i < count; i++) {
+                chosen[i] =
+                    joint == JOIN_OR ? chosen[i] || term[i] : chosen[i] && term[i] == (joint == JOIN_AND);
+            }
             wants_term = false;
         } else {
             joint = joint_of(word);

@@ -178,13 +178,6 @@ static enum status choose_by(const struct term *term, enum group_kind from, cons
     return STATUS_OK;
 }
 
-static enum status choose_boundary(const struct term *term)
-{
-    NEW_SCRATCH(bool, facets, term->body->boundary.count, term->error);
-    memset(facets, true, (size_t)term->body->boundary.count * sizeof *facets);
-    return choose_by(term, GROUP_FACETS, facets);
-}
-
 /* ---- by shape of the boundary, and by connection ---- */
 
 static enum status check_degrees(const struct term *term, double degrees)
@@ -253,13 +246,6 @@ static enum status choose_part(const struct term *term)
 
 /* ---- by name ---- */
 
-static enum status fail_unknown(const struct term *term, enum group_kind kind)
-{
-    const struct names *names = &term->body->groups[kind].names;
-    return fail(term->error, STATUS_INPUT, "'%.60s' is no term of -h, and no name of %s; there are: %.256s",
-                term->text, group_kind_names[kind], names->count > 0 ? names->list : "none");
-}
-
 /* Choose by the items of a group of kind `from`. */
 static enum status choose_named(const struct term *term, enum group_kind from, const char *name)
 {
@@ -267,7 +253,9 @@ static enum status choose_named(const struct term *term, enum group_kind from, c
     const struct items *items = &term->body->items[from];
     int64_t place = names_find(&list->names, name);
     if (place < 0) {
-        return fail_unknown(term, from);
+        return fail(term->error, STATUS_INPUT,
+                    "'%.60s' is no term of -h, and no name of %s; there are: %.256s", term->text,
+                    group_kind_names[from], list->names.count > 0 ? list->names.list : "none");
     }
     NEW_SCRATCH(bool, in, items->count, term->error);
     for (int64_t i = 0; i < list->count; i++) {
@@ -326,7 +314,9 @@ enum status group_term(const struct group_body *body, enum group_kind kind, cons
         return STATUS_OK;
     }
     if (strcmp(text, "boundary") == 0) {
-        return choose_boundary(&term);
+        NEW_SCRATCH(bool, facets, body->boundary.count, error);
+        memset(facets, true, (size_t)body->boundary.count * sizeof *facets);
+        return choose_by(&term, GROUP_FACETS, facets);
     }
     if (text[length] != ':') {
         return choose_named(&term, kind, text);
