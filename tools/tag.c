@@ -116,52 +116,41 @@ static enum status make_group(const struct request *request, enum group_kind kin
     return group_put(body, kind, name, chosen, error);
 }
 
-/* The kind and place of the group "NAME" or "KIND:NAME". */
-static enum status find_any(const struct request *request, const char *name, enum group_kind *kind,
-                            int64_t *place, struct error *error)
+/* Delete the group "NAME" or "KIND:NAME". */
+static enum status delete_group(const struct request *request, struct error *error)
 {
-    *place = -1;
+    const char *name = request->use->value;
+    int64_t place = -1;
+    int kind = 0;
     for (int k = 0; k < GROUP_KINDS; k++) {
         size_t length = strlen(group_kind_names[k]);
         bool prefixed = strncmp(name, group_kind_names[k], length) == 0 && name[length] == ':';
         int64_t found = names_find(&request->body->groups[k].names, prefixed ? name + length + 1 : name);
-        if (found >= 0 && *place >= 0) {
+        if (found >= 0 && place >= 0) {
             return fail(error, STATUS_INPUT, "both %s and %s have that name: write %s:%s or %s:%s",
-                        group_kind_names[*kind], group_kind_names[k], group_kind_names[*kind], name,
+                        group_kind_names[kind], group_kind_names[k], group_kind_names[kind], name,
                         group_kind_names[k], name);
         }
-        if (found >= 0) {
-            *place = found;
-            *kind = (enum group_kind)k;
-        }
+        kind = found >= 0 ? k : kind;
+        place = found >= 0 ? found : place;
     }
-    return *place >= 0 ? STATUS_OK : fail(error, STATUS_INPUT, "no group of that name: -v lists them");
-}
-
-static enum status delete_group(const struct request *request, struct error *error)
-{
-    enum group_kind kind = GROUP_FACETS;
-    int64_t place;
-    enum status status = find_any(request, request->use->value, &kind, &place, error);
-    if (status == STATUS_OK && kind == GROUP_REGION) {
+    if (place < 0 || kind == GROUP_REGION) {
         return fail(error, STATUS_INPUT,
-                    "its cells would belong to no region: give them another region by -r");
+                    place < 0 ? "no group of that name: -v lists them"
+                              : "its cells would belong to no region: give them another region by -r");
     }
-    return status == STATUS_OK ? group_remove(&request->body->groups[kind], place, error) : status;
+    return group_remove(&request->body->groups[kind], place, error);
 }
 
 static enum status carry_out(const struct request *request, struct error *error)
 {
-    switch (request->use->option->letter) {
-    case 'f':
-        return make_group(request, GROUP_FACETS, error);
-    case 'n':
-        return make_group(request, GROUP_NODES, error);
-    case 'r':
-        return make_group(request, GROUP_REGION, error);
-    default:
-        return delete_group(request, error);
-    }
+    char letter = request->use->option->letter;
+    return letter == 'd' ? delete_group(request, error)
+                         : make_group(request,
+                                      letter == 'f'   ? GROUP_FACETS
+                                      : letter == 'n' ? GROUP_NODES
+                                                      : GROUP_REGION,
+                                      error);
 }
 
 /* ---- the result ---- */

@@ -50,17 +50,6 @@ static bool factorise_block(int64_t n, int64_t k, int64_t last, double *matrix)
     return true;
 }
 
-/* The columns of L from k to before `last` in row i below, and in L^T. */
-static void solve_row(int64_t n, int64_t k, int64_t last, int64_t i, double *matrix)
-{
-    double *row = matrix + i * n;
-    for (int64_t c = k; c < last; c++) {
-        double *above = matrix + c * n;
-        above[i] = row[c] /= above[c];
-        dense_add_row(last - c - 1, -row[c], above + c + 1, row + c + 1);
-    }
-}
-
 /* The columns of L from k to before `last` in the rows from there on, and these less what they take: each
  * entry is summed in the order of the columns, as without panels. */
 static void reduce(int64_t n, int64_t k, int64_t last, double *matrix)
@@ -70,7 +59,12 @@ static void reduce(int64_t n, int64_t k, int64_t last, double *matrix)
     {
 #pragma omp for schedule(static)
         for (int64_t i = last; i < n; i++) {
-            solve_row(n, k, last, i, matrix);
+            double *row = matrix + i * n;
+            for (int64_t c = k; c < last; c++) {
+                double *above = matrix + c * n;
+                above[i] = row[c] /= above[c];
+                dense_add_row(last - c - 1, -row[c], above + c + 1, row + c + 1);
+            }
         }
 #pragma omp for schedule(static, 1)
         for (int64_t i = last; i < n; i++) {

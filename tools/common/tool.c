@@ -86,17 +86,6 @@ char *tool_text(const struct tool *tool, const char *format, ...)
     return tool_memory(tool, text);
 }
 
-/* Open missing standard descriptors so that using them fails: a file opened later must not become standard
- * input, output or error. */
-static void fill_descriptors(void)
-{
-    for (int descriptor = 0; descriptor <= 2; descriptor++) {
-        if (fcntl(descriptor, F_GETFD) < 0 && errno == EBADF) {
-            (void)open("/dev/null", descriptor == 0 ? O_WRONLY : O_RDONLY);
-        }
-    }
-}
-
 static _Noreturn void print_and_exit(const struct tool *tool, const char *text)
 {
     if (process_speaks()) {
@@ -137,7 +126,13 @@ void tool_begin(struct tool *tool, const char *usage, int least, int most, int a
 {
     const char *slash = argc > 0 ? strrchr(argv[0], '/') : NULL;
     *tool = (struct tool){.name = slash != NULL ? slash + 1 : argc > 0 ? argv[0] : "", .usage = usage};
-    fill_descriptors();
+    /* Missing standard descriptors: using them fails, and no file that is opened later becomes one of them.
+     */
+    for (int descriptor = 0; descriptor <= 2; descriptor++) {
+        if (fcntl(descriptor, F_GETFD) < 0 && errno == EBADF) {
+            (void)open("/dev/null", descriptor == 0 ? O_WRONLY : O_RDONLY);
+        }
+    }
     gsl_set_error_handler_off(); /* its functions return errors */
     /* If the reader closes the pipe (head), end quietly, whatever the parent process has set. */
     signal(SIGPIPE, SIG_DFL);

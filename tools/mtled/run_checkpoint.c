@@ -16,14 +16,12 @@ static void on_signal(int number)
     caught = number;
 }
 
-/* Let SIGINT, SIGTERM and SIGHUP, unless ignored, only set `caught` to their number; it is initially 0. A
- * second signal of the same kind ends the process at once. */
-static void catch_signals(void)
+/* Let SIGINT, SIGTERM and SIGHUP, unless ignored, do this. */
+static void handle_signals(void (*handler)(int number), unsigned flags)
 {
-    struct sigaction action = {.sa_handler = on_signal, .sa_flags = SA_RESTART | (int)SA_RESETHAND};
+    struct sigaction present, action = {.sa_handler = handler, .sa_flags = (int)flags};
     sigemptyset(&action.sa_mask);
     for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
-        struct sigaction present;
         if (sigaction(numbers[i], NULL, &present) == 0 && present.sa_handler != SIG_IGN) {
             sigaction(numbers[i], &action, NULL);
         }
@@ -117,7 +115,7 @@ void run_checkpoint_begin(struct run *run)
     }
     checkpoint->last = omp_get_wtime();
     checkpoint->interrupted = &caught;
-    catch_signals();
+    handle_signals(on_signal, SA_RESTART | SA_RESETHAND); /* a second one ends the process at once */
 }
 
 /* Put sections for viewing the checkpoint: the cloud, and the field at this step; and the tables of frames.
@@ -206,12 +204,7 @@ bool run_checkpoint_step(struct run *run, const struct progress *progress)
 
 void run_checkpoint_end(void)
 {
-    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
-        struct sigaction present;
-        if (sigaction(numbers[i], NULL, &present) == 0 && present.sa_handler == on_signal) {
-            signal(numbers[i], SIG_DFL);
-        }
-    }
+    handle_signals(SIG_DFL, 0);
 }
 
 void run_checkpoint_stop(struct run *run, int64_t steps)

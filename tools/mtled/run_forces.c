@@ -69,21 +69,6 @@ static void add_conditions(const struct run *run, struct totals *totals)
     }
 }
 
-static void add_contacts(const struct run *run, struct totals *totals)
-{
-    const struct solid_system *system = &run->model->system;
-    for (int64_t c = 0; c < system->contact_count; c++) {
-        const struct contact *contact = &system->contacts[c];
-        int64_t row = run->scene->displacement_count + run->scene->support_count + contact->section;
-        double force[3], moment[3];
-        contact_total(contact, force);
-        contact_moment(contact, totals->about, moment);
-        add_scaled(totals->dim, 1.0, force, totals->force + row * totals->dim);
-        add_scaled(totals->moment_count, 1.0, moment + 3 - totals->moment_count,
-                   totals->moment + row * totals->moment_count);
-    }
-}
-
 static const char *name_of_row(const struct scene *scene, int64_t r)
 {
     int64_t support = r - scene->displacement_count, contact = support - scene->support_count;
@@ -137,7 +122,16 @@ void run_put_forces(struct run *run, const struct instant *instant)
     totals.force = run_new_values(run, rows * totals.dim);
     totals.moment = run_new_values(run, rows * totals.moment_count);
     add_conditions(run, &totals);
-    add_contacts(run, &totals);
+    for (int64_t c = 0; c < run->model->system.contact_count; c++) {
+        const struct contact *contact = &run->model->system.contacts[c];
+        int64_t row = scene->displacement_count + scene->support_count + contact->section;
+        double force[3], moment[3];
+        contact_total(contact, force);
+        contact_moment(contact, totals.about, moment);
+        add_scaled(totals.dim, 1.0, force, totals.force + row * totals.dim);
+        add_scaled(totals.moment_count, 1.0, moment + 3 - totals.moment_count,
+                   totals.moment + row * totals.moment_count);
+    }
     if (output->reactions) {
         put_vectors(run, instant, "reactions", is_plane ? "N/m" : "N", "", is_plane ? "xy" : "xyz", rows,
                     totals.force);
