@@ -11,21 +11,11 @@
 #define SAME_DIRECTION 0.5
 #define GEOMETRIC_SEQUENCE 0.99
 
-static inline double vector_dot(int dim, const double *a, const double *b)
-{
-    double sum = 0.0;
-    for (int i = 0; i < dim; i++) {
-        sum += a[i] * b[i];
-    }
-    return sum;
-}
-
-/* The same for nodal vectors of so many numbers. */
-static inline double vector_product(int64_t size, const double *x, const double *y)
+static inline double vector_dot(int64_t size, const double *a, const double *b)
 {
     double sum = 0.0;
     for (int64_t i = 0; i < size; i++) {
-        sum += x[i] * y[i];
+        sum += a[i] * b[i];
     }
     return sum;
 }

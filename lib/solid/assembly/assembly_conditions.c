@@ -54,7 +54,8 @@ static enum status add_rest(const struct prescription *p, const struct boundary_
     int32_t node = averages->node[a];
     struct demand demand;
     double mine[9];
-    bool full = !p->penalties && prescription_is_full(p);
+    bool full =
+        !p->penalties && prescription_directions(p->condition, p->input->cells.dim) == p->input->cells.dim;
     enum status status = prescription_demand(p, averages, a, false, &demand, error);
     for (int k = 0; status == STATUS_OK && k < demand.count; k++) {
         double rest[3], target = demand.value[k], *direction = demand.direction + k * dim;
@@ -183,7 +184,8 @@ static enum status part_tractions(const struct prescription *p, const struct bou
 {
     int64_t dim = p->input->cells.dim;
     NEW_SCRATCH(int64_t, count, sides->group_count, error);
-    if (p->condition->kind == CONDITION_COMPONENTS && prescription_is_full(p)) {
+    if (p->condition->kind == CONDITION_COMPONENTS &&
+        prescription_directions(p->condition, p->input->cells.dim) == p->input->cells.dim) {
         return STATUS_OK;
     }
     for (int64_t a = sides->node_average_count; a < averages->count; a++) {

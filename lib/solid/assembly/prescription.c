@@ -193,23 +193,6 @@ enum status prescription_check_fit(const struct prescription *p, struct error *n
     return STATUS_OK;
 }
 
-/* The mean of the table over the samples of one average. */
-static enum status average_of_table(const struct prescription *p, const struct boundary_averages *averages,
-                                    int64_t a, double *mean, struct error *error)
-{
-    int dim = p->input->cells.dim;
-    memset(mean, 0, (size_t)dim * sizeof *mean);
-    for (int64_t s = averages->sample_ptr[a]; s < averages->sample_ptr[a + 1]; s++) {
-        double value[3];
-        enum status status = value_at(p, averages->node[a], averages->sample_x + s * dim, value, error);
-        if (status != STATUS_OK) {
-            return status;
-        }
-        add_scaled(dim, averages->sample_share[s], value, mean);
-    }
-    return STATUS_OK;
-}
-
 /* Whether the condition does not prescribe component i. */
 static bool is_free(const struct condition *condition, int i)
 {
@@ -225,15 +208,9 @@ int prescription_directions(const struct condition *condition, int dim)
     return condition->kind == CONDITION_NORMAL ? 1 : count;
 }
 
-bool prescription_is_full(const struct prescription *p)
-{
-    return prescription_directions(p->condition, p->input->cells.dim) == p->input->cells.dim;
-}
-
 enum status prescription_demand(const struct prescription *p, const struct boundary_averages *averages,
                                 int64_t a, bool at_node, struct demand *demand, struct error *error)
 {
-    enum status status = STATUS_OK;
     int dim = p->input->cells.dim;
     int32_t node = averages->node[a];
     const struct condition *condition = p->condition;
@@ -244,15 +221,22 @@ enum status prescription_demand(const struct prescription *p, const struct bound
         demand->value[demand->count++] = condition->normal;
         return STATUS_OK;
     }
-    if (condition->kind == CONDITION_TABLE) {
-        status = at_node ? value_at(p, node, p->input->cells.x + (int64_t)node * dim, value, error)
-                         : average_of_table(p, averages, a, value, error);
+    if (condition->kind == CONDITION_TABLE && at_node) {
+        RETURN_IF_ERROR(value_at(p, node, p->input->cells.x + (int64_t)node * dim, value, error));
     }
-    for (int i = 0; status == STATUS_OK && i < dim; i++) {
-        if (!is_free(p->condition, i)) {
+    if (condition->kind == CONDITION_TABLE && !at_node) { /* the mean over the samples of the average */
+        memset(value, 0, sizeof value);
+        for (int64_t s = averages->sample_ptr[a]; s < averages->sample_ptr[a + 1]; s++) {
+            double sample[3];
+            RETURN_IF_ERROR(value_at(p, node, averages->sample_x + s * dim, sample, error));
+            add_scaled(dim, averages->sample_share[s], sample, value);
+        }
+    }
+    for (int i = 0; i < dim; i++) {
+        if (!is_free(condition, i)) {
             demand->direction[demand->count * dim + i] = 1.0;
             demand->value[demand->count++] = value[i];
         }
     }
-    return status;
+    return STATUS_OK;
 }

@@ -53,9 +53,8 @@ struct demand {
     double value[3];     /* count: m */
 };
 
-/* The number of directions that the condition prescribes at a place; whether it equals dim. */
+/* The number of directions that the condition prescribes at a place. */
 int prescription_directions(const struct condition *condition, int dim);
-bool prescription_is_full(const struct prescription *p);
 
 /* STATUS_INPUT if two rows of the condition's table have one place and different displacements. */
 MUST_CHECK enum status prescription_check_table(const struct prescription *p, struct error *error);

@@ -11,7 +11,7 @@ void dynamics_add_work(struct dynamics *d, const double *velocity, double step, 
     const struct constraint_rows *rows = &system->rows;
     double work = 0.0, unresolved = 0.0;
     if (d->loads != NULL) {
-        work += step * vector_product(d->size, d->loads, velocity);
+        work += step * vector_dot(d->size, d->loads, velocity);
     }
     for (int64_t i = 0; d->stored != NULL && i < system->curve_count; i++) {
         work += d->stored[i] * (factor_to[i] - factor_from[i]);
@@ -38,7 +38,7 @@ void dynamics_add_work(struct dynamics *d, const double *velocity, double step, 
     d->balance.largest = fmax(d->balance.largest, unresolved / (8.0 * DYNAMICS_MOST_DRIFT));
     d->balance.work += 0.5 * work;
     if (d->drag != NULL) {
-        d->balance.dissipated += 0.5 * step * vector_product(d->size, d->drag, velocity);
+        d->balance.dissipated += 0.5 * step * vector_dot(d->size, d->drag, velocity);
     }
     if (d->options->damping > 0.0) {
         double speed =

@@ -54,9 +54,9 @@ void newton_conjugate(struct newton *n)
     directions->part = 0.0;
     for (int before = newton_directions_kept(directions) - 1; before >= 0; before--) {
         int k = newton_direction(directions, before);
-        double along = vector_product(n->size, directions->move[k], n->cg.product);
+        double along = vector_dot(n->size, directions->move[k], n->cg.product);
         if (n->system->contact_count > 0) {
-            along += vector_product(n->size, directions->contact[k], n->cg.search);
+            along += vector_dot(n->size, directions->contact[k], n->cg.search);
         }
         double part = directions->part = -along / directions->curvature[k];
         for (int64_t i = 0; i < n->size; i++) {
@@ -86,9 +86,9 @@ void newton_descend_again(struct newton *n)
     for (int before = newton_directions_kept(directions) - 1; before >= 0; before--) {
         int k = newton_direction(directions, before);
         const double *move = directions->move[k];
-        double way = (vector_product(n->size, move, n->model.smooth) +
-                      vector_product(n->size, move, n->model.contact)) /
-                     directions->curvature[k];
+        double way =
+            (vector_dot(n->size, move, n->model.smooth) + vector_dot(n->size, move, n->model.contact)) /
+            directions->curvature[k];
         for (int64_t i = 0; i < n->size; i++) {
             n->step.move[i] += way * move[i];
             n->model.smooth[i] -= way * directions->product[k][i];

@@ -77,7 +77,7 @@ void newton_multiply(struct newton *n, const double *move, double *product)
 double newton_curvature(struct newton *n)
 {
     newton_multiply(n, n->cg.search, n->cg.product);
-    double curvature = vector_product(n->size, n->cg.search, n->cg.product);
+    double curvature = vector_dot(n->size, n->cg.search, n->cg.product);
     (void)newton_evaluate(n, n->u, &n->at_u);
     return curvature;
 }
@@ -99,7 +99,7 @@ static double scale_gradient(struct newton *n)
         gradient[i] = n->model.smooth[i] + n->model.contact[i];
     }
     preconditioner_apply(&n->preconditioner, gradient, n->cg.scaled);
-    return vector_product(n->size, gradient, n->cg.scaled);
+    return vector_dot(n->size, gradient, n->cg.scaled);
 }
 
 /* Along the search direction the model falls by `down` at first, and contacts apart by `slope` less `bend`
@@ -113,7 +113,7 @@ static double search_along(struct newton *n, double down, double slope, double b
     }
     for (int turn = 0;; turn++) {
         touch(n, way);
-        double at = slope - way * bend + vector_product(n->size, n->cg.search, n->model.contact);
+        double at = slope - way * bend + vector_dot(n->size, n->cg.search, n->model.contact);
         if (fabs(at) <= slope_left * down || (at > 0.0 && way >= most) || turn == MOST_TURNS) {
             return way;
         }
@@ -172,7 +172,7 @@ double newton_square(struct newton *n, const struct newton_forces *forces)
         n->cg.product[i] += n->system->contact_count > 0 ? forces->contact[i] : 0.0;
     }
     preconditioner_apply(&n->preconditioner, n->cg.product, n->cg.scaled);
-    return vector_product(n->size, n->cg.product, n->cg.scaled);
+    return vector_dot(n->size, n->cg.product, n->cg.scaled);
 }
 
 /* Lanczos's matrix of M^-1 K, from conjugate gradients. */
@@ -216,13 +216,12 @@ static void note_products(struct newton *n, int products, double fallen, const s
  * keep it. Returns the way. The model falls by `down` at first. */
 static double lower(struct newton *n, double down, double most)
 {
-    double curvature = vector_product(n->size, n->cg.search, n->cg.product);
+    double curvature = vector_dot(n->size, n->cg.search, n->cg.product);
     double *lost = n->system->contact_count > 0 ? n->cg.scaled : NULL;
     if (lost != NULL) {
         memcpy(lost, n->model.contact, (size_t)n->size * sizeof *lost);
     }
-    double way =
-        search_along(n, down, vector_product(n->size, n->cg.search, n->model.smooth), curvature, most);
+    double way = search_along(n, down, vector_dot(n->size, n->cg.search, n->model.smooth), curvature, most);
     for (int64_t i = 0; i < n->size; i++) {
         n->step.move[i] += way * n->cg.search[i];
         n->model.smooth[i] -= way * n->cg.product[i];
@@ -231,7 +230,7 @@ static double lower(struct newton *n, double down, double most)
         for (int64_t i = 0; i < n->size; i++) {
             lost[i] = (lost[i] - n->model.contact[i]) / way;
         }
-        curvature += vector_product(n->size, n->cg.search, lost);
+        curvature += vector_dot(n->size, n->cg.search, lost);
     }
     if (curvature > 0.0) {
         newton_keep_direction(n, n->cg.search, lost, curvature);
@@ -244,8 +243,8 @@ static void continue_last(struct newton *n, double most)
 {
     memcpy(n->cg.search, n->load.move, (size_t)n->size * sizeof *n->cg.search);
     constraint_project(&n->preconditioner.constraint, NULL, n->cg.search);
-    double down = vector_product(n->size, n->cg.search, n->model.smooth) +
-                  vector_product(n->size, n->cg.search, n->model.contact);
+    double down = vector_dot(n->size, n->cg.search, n->model.smooth) +
+                  vector_dot(n->size, n->cg.search, n->model.contact);
     if (down > 0.0) {
         newton_multiply(n, n->cg.search, n->cg.product);
         (void)lower(n, down, most);
@@ -284,7 +283,7 @@ bool newton_solve_model(struct newton *n, double of_last, double share, double r
         double most = (radius - length) / newton_longest(n, n->cg.search, NULL);
         double way = lower(n, down, most);
         if (way >= most) {
-            n->near.falls |= vector_product(n->size, n->cg.search, n->cg.product) < 0.0;
+            n->near.falls |= vector_dot(n->size, n->cg.search, n->cg.product) < 0.0;
             return false;
         }
         add_step(&lanczos, way, fmax(0.0, n->directions.part));

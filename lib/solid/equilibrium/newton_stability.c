@@ -40,7 +40,7 @@ static bool is_negative(struct newton *n, double *move)
     double curvature[2];
     for (int way = 0; way < 2; way++) {
         multiply(n, move, n->cg.product);
-        curvature[way] = vector_product(n->size, move, n->cg.product);
+        curvature[way] = vector_dot(n->size, move, n->cg.product);
         for (int64_t i = 0; i < n->size; i++) {
             move[i] = -move[i];
         }
@@ -68,12 +68,12 @@ static double orthogonalise(struct newton *n, int k, gsl_matrix *H)
     struct newton_directions *basis = &n->directions;
     for (int before = 0; before < newton_directions_kept(basis); before++) {
         int i = newton_direction(basis, before);
-        double part = vector_product(n->size, basis->move[i], n->cg.product);
+        double part = vector_dot(n->size, basis->move[i], n->cg.product);
         gsl_matrix_set(H, (size_t)(k - before), (size_t)k, part);
         add_scaled((int)n->size, -part, basis->product[i], n->cg.product);
         add_scaled((int)n->size, -part, basis->move[i], n->cg.scaled);
     }
-    return sqrt(fmax(0.0, vector_product(n->size, n->cg.scaled, n->cg.product)));
+    return sqrt(fmax(0.0, vector_dot(n->size, n->cg.scaled, n->cg.product)));
 }
 
 /* The pivot of the k-th column of H = L U. */
@@ -117,8 +117,8 @@ static bool is_held(struct newton *n, const double *load)
 {
     memcpy(n->cg.search, load, (size_t)n->size * sizeof *load);
     preconditioner_project(&n->preconditioner, n->cg.search);
-    return sqrt(vector_product(n->size, n->cg.search, n->cg.search)) <=
-           COARSE_ROUND_OFF * sqrt(vector_product(n->size, load, load));
+    return sqrt(vector_dot(n->size, n->cg.search, n->cg.search)) <=
+           COARSE_ROUND_OFF * sqrt(vector_dot(n->size, load, load));
 }
 
 /* Search until the residual is small, or, with a symmetric K, a quotient is negative. */
@@ -129,8 +129,7 @@ static enum status search(struct newton *n, struct space *space, struct error *e
     newton_forget_directions(n);
     frequency_start(n->cg.product, n->size);
     preconditioner_apply(&n->preconditioner, n->cg.product, n->cg.scaled);
-    double length =
-        is_held(n, n->cg.product) ? 0.0 : sqrt(vector_product(n->size, n->cg.scaled, n->cg.product));
+    double length = is_held(n, n->cg.product) ? 0.0 : sqrt(vector_dot(n->size, n->cg.scaled, n->cg.product));
     memset(n->cg.search, 0, (size_t)n->size * sizeof *n->cg.search);
     for (int k = 0; length > 0.0 && !space->searched && !negative && k < NEWTON_MOST_ITERATIONS; k++) {
         RETURN_IF_ERROR(extend(n, length, space, error));

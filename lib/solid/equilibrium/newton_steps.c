@@ -160,8 +160,8 @@ bool newton_take_increment(struct newton *n, double from, double change)
 static double rise(struct newton *n)
 {
     double contact = n->at_trial.contact_energy - n->at_u.contact_energy;
-    double first = vector_product(n->size, n->step.move, n->at_u.smooth);
-    double last = vector_product(n->size, n->step.move, n->at_trial.smooth);
+    double first = vector_dot(n->size, n->step.move, n->at_u.smooth);
+    double last = vector_dot(n->size, n->step.move, n->at_trial.smooth);
     if (n->watch.steps == 0 && 0.5 * (first + last) > contact) {
         return contact - 0.5 * (first + last);
     }
@@ -169,7 +169,7 @@ static double rise(struct newton *n)
         n->cg.search[i] = 0.5 * (n->u[i] + n->trial[i]);
     }
     (void)system_smooth_residual(n->system, n->cg.search, n->cg.product);
-    double middle = vector_product(n->size, n->step.move, n->cg.product);
+    double middle = vector_dot(n->size, n->step.move, n->cg.product);
     (void)newton_evaluate(n, n->trial, &n->at_trial);
     n->report->force_evaluations++;
     return contact - (first + 4.0 * middle + last) / 6.0;

@@ -92,8 +92,7 @@ struct cells division_cells(const struct division *body)
 
 /* ---- growing ---- */
 
-/* Append the node at a + share (b - a); a copy of a node is one between it and itself. */
-static enum status add_node(struct division *body, int32_t a, int32_t b, double share, struct error *error)
+enum status division_add_node(struct division *body, int32_t a, int32_t b, double share, struct error *error)
 {
     int dim = body->dim;
     int64_t n = body->node_count;
@@ -105,12 +104,6 @@ static enum status add_node(struct division *body, int32_t a, int32_t b, double 
     body->sets[n] = body->sets[a] & body->sets[b];
     body->node_count++;
     return STATUS_OK;
-}
-
-enum status division_double(struct division *body, int32_t node, int32_t *copy, struct error *error)
-{
-    *copy = (int32_t)body->node_count;
-    return add_node(body, node, node, 0.0, error);
 }
 
 /* ---- splitting ---- */
@@ -246,7 +239,7 @@ enum status division_split(struct division *body, int64_t count, const struct sp
     RETURN_IF_ERROR(split_cells(body, &splits, error));
     RETURN_IF_ERROR(split_facets(body, &splits, error));
     for (int64_t i = 0; i < count; i++) {
-        RETURN_IF_ERROR(add_node(body, split[i].node[0], split[i].node[1], split[i].share, error));
+        RETURN_IF_ERROR(division_add_node(body, split[i].node[0], split[i].node[1], split[i].share, error));
     }
     return STATUS_OK;
 }

@@ -44,9 +44,9 @@ int split_compare(const void *left, const void *right);
 MUST_CHECK enum status division_split(struct division *body, int64_t count, const struct split *split,
                                       struct error *error);
 
-/* Append a copy of a node; *copy receives its number. */
-MUST_CHECK enum status division_double(struct division *body, int32_t node, int32_t *copy,
-                                       struct error *error);
+/* Append the node at a + share (b - a); a copy of a node is one between it and itself. */
+MUST_CHECK enum status division_add_node(struct division *body, int32_t a, int32_t b, double share,
+                                         struct error *error);
 MUST_CHECK enum status division_add_facet(struct division *body, const int32_t *facet, int32_t group,
                                           struct error *error);
 

@@ -270,7 +270,8 @@ static enum status double_nodes(struct opening *opening, struct error *error)
         if (first == i) {
             own[i] = node;
             if (met[node]) {
-                RETURN_IF_ERROR(division_double(body, node, &own[i], error));
+                own[i] = (int32_t)body->node_count;
+                RETURN_IF_ERROR(division_add_node(body, node, node, 0.0, error));
             }
             met[node] = true;
         }

@@ -64,9 +64,9 @@ double system_largest_frequency(struct solid_system *system, struct precondition
         for (int64_t i = 0; i < size; i++) {
             displaced[i] = (residual[i] - response[i]) / epsilon;
         }
-        double product = vector_product(size, mode, displaced);
+        double product = vector_dot(size, mode, displaced);
         preconditioner_apply(p, displaced, response);
-        eigenvalue = vector_product(size, response, displaced) / product;
+        eigenvalue = vector_dot(size, response, displaced) / product;
         double scale = 1.0 / largest_entry(response, size);
         for (int64_t i = 0; i < size; i++) {
             mode[i] = response[i] * scale;

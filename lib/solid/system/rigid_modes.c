@@ -33,7 +33,6 @@ struct part {
 
 struct parts {
     const struct solid_system *system;
-    int32_t count;
     const int32_t *of_node; /* node_count */
     struct part *part;      /* count */
 };
@@ -163,41 +162,6 @@ static void keep_free(int modes, struct part *part, const double *form, double m
     memcpy(part->basis, kept, sizeof kept);
 }
 
-static void parts_free(struct parts *parts)
-{
-    free(parts->part);
-}
-
-/* The free motions of each part. Springs of measured points and of supports count as rows. On curved sides
- * facets approximate the surface: a motion along it has values on them that are not 0 but change their sign
- * from facet to facet. Such a motion is free: more than half of the mean square of its values vanishes where
- * the values of facets that meet are averaged. */
-static enum status parts_find(struct parts *parts, struct error *error)
-{
-    const struct solid_system *system = parts->system;
-    int dim = system->dim, modes = mode_count(dim);
-    RETURN_IF_ERROR(NEW_ARRAY(&parts->part, parts->count, error));
-    for (int32_t p = 0; p < parts->count; p++) {
-        parts->part[p].box = box_of(dim, 0, NULL);
-    }
-    for (int64_t n = 0; n < system->node_count; n++) {
-        box_add(&parts->part[parts->of_node[n]].box, 1, system->X + n * dim);
-    }
-    hold_rows(parts);
-    RETURN_IF_ERROR(measure_curved(parts, error));
-    for (int32_t p = 0; p < parts->count; p++) {
-        struct part *part = &parts->part[p];
-        for (part->count = 0; part->count < modes; part->count++) {
-            part->basis[part->count][part->count] = 1.0;
-        }
-        keep_free(modes, part, part->held, least_value * least_value);
-        if (part->area > 0.0) {
-            keep_free(modes, part, part->correlation, least_value * least_value * part->area);
-        }
-    }
-    return STATUS_OK;
-}
-
 /* Append a rotation with the coefficients `mode`: its axis, and a point on it. */
 static void put_rotation(const struct box *box, const double *mode, struct rigid_modes *modes)
 {
@@ -244,17 +208,42 @@ static void split_modes(int dim, const struct part *part, struct rigid_modes *mo
     }
 }
 
+static void parts_free(struct parts *parts)
+{
+    free(parts->part);
+}
+
+/* On curved sides facets approximate the surface: a motion along it has values on them that are not 0 but
+ * change their sign from facet to facet. Such a motion is free: more than half of the mean square of its
+ * values vanishes where the values of facets that meet are averaged. */
 enum status system_rigid_modes(const struct solid_system *system, int32_t part_count, const int32_t *part,
                                struct rigid_modes *modes, struct error *error)
 {
-    FREED_BY(parts_free) struct parts parts = {.system = system, .count = part_count, .of_node = part};
-    RETURN_IF_ERROR(parts_find(&parts, error));
+    FREED_BY(parts_free) struct parts parts = {.system = system, .of_node = part};
+    int dim = system->dim, count = mode_count(dim);
+    RETURN_IF_ERROR(NEW_ARRAY(&parts.part, part_count, error));
     memset(modes, 0, (size_t)part_count * sizeof *modes);
     for (int32_t p = 0; p < part_count; p++) {
-        for (int a = 0; a < system->dim; a++) {
-            modes[p].centre[a] = middle(&parts.part[p].box, a);
+        parts.part[p].box = box_of(dim, 0, NULL);
+    }
+    for (int64_t n = 0; n < system->node_count; n++) {
+        box_add(&parts.part[part[n]].box, 1, system->X + n * dim);
+    }
+    hold_rows(&parts);
+    RETURN_IF_ERROR(measure_curved(&parts, error));
+    for (int32_t p = 0; p < part_count; p++) {
+        struct part *own = &parts.part[p];
+        for (own->count = 0; own->count < count; own->count++) {
+            own->basis[own->count][own->count] = 1.0;
         }
-        split_modes(system->dim, &parts.part[p], &modes[p]);
+        keep_free(count, own, own->held, least_value * least_value);
+        if (own->area > 0.0) {
+            keep_free(count, own, own->correlation, least_value * least_value * own->area);
+        }
+        for (int a = 0; a < dim; a++) {
+            modes[p].centre[a] = middle(&own->box, a);
+        }
+        split_modes(dim, own, &modes[p]);
     }
     return STATUS_OK;
 }
