@@ -116,22 +116,17 @@ void run_solve(struct run *run);
 /* Notes displacements, and motions of rigid surfaces, far larger than the body; exits for impossible ones. */
 void run_contacts_begin(const struct run *run);
 
-/* For the final state, whose displacement has this error, m: notes bodies that only contacts held, and that
- * none presses any more. */
-void run_check_lost(const struct run *run, double error_left);
-
 /* For run->u, with the largest displacement `motion`, m: exits with a verdict, in a quasi-static scene, if
  * the remaining penetration of contacts takes too large a share of the forces. To first order that is half of
  * the work of the contact forces along it, by the stored energy: this is proportional to the square of the
  * motion, forces to the motion itself. In the final state notes a penetration larger than `allowed`, m. */
 void run_contacts_penetrate(struct run *run, double motion, double allowed, bool final);
 
-/* For the final state: notes rigid surfaces that the body has never touched. */
-void run_contacts_touch(const struct run *run);
-
-/* For the final state: notes a curved side whose displacement is prescribed along its normal, and that slides
- * so far that it leaves its surface. */
-void run_sliding_judge(const struct run *run);
+/* For the final state, whose displacement has this error, m; negative, of a dynamic scene: not known. Notes
+ * rigid surfaces that the body has never touched; bodies that only contacts held, and that none presses any
+ * more; and a curved side whose displacement is prescribed along its normal, and that slides so far that it
+ * leaves its surface. */
+void run_held_judge(const struct run *run, double error_left);
 
 /* A frame_function; the context is the struct run: writes the sections u.frame.NUMBER and
  * parameters.frame.NUMBER; of a state of equilibrium, run->u, at which the system was evaluated last, all
@@ -234,7 +229,7 @@ MUST_CHECK enum status run_folds_state(struct run *run, const struct state *stat
 void run_folds_describe(const struct run *run, char *text, size_t size);
 
 /* After the last step: a body that folds, or an equilibrium that was not stable, ends the run with a verdict,
- * unless the scene allows it; what is to be noted is. */
+ * unless the scene allows it. Else notes where the body has left a state near equilibrium on the way. */
 void run_folds_judge(struct run *run);
 
 /* ---- stability ---- */
@@ -242,7 +237,3 @@ void run_folds_judge(struct run *run);
 /* Check an equilibrium at this share of the load, which was evaluated last: exits with a verdict where the
  * material law is not strongly elliptic in a large part of the body. In the final state notes a small one. */
 void run_stability_check(struct run *run, double load, bool final);
-
-/* Note where the body has left a state near equilibrium on the way, unless a fold or the present state's
- * stability is the verdict. */
-void run_stability_left(const struct run *run);

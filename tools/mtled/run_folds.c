@@ -287,6 +287,13 @@ void run_folds_judge(struct run *run)
             "at %s: press less, hold it there",
             when_text(run, stability->since, when), node_text(run, stability->node, place));
     }
+    const struct stability *found = &run->model->system.stability;
+    if (text[0] == '\0' && found->left) {
+        run_note(run,
+                 "at %s the body leaves a state near equilibrium, most of all at %s: it buckles, wrinkles or "
+                 "snaps through, and the result may be one of several",
+                 when_text(run, found->left_load, when), node_text(run, found->left_node, place));
+    }
     if (text[0] == '\0') {
         return;
     }
@@ -319,16 +326,4 @@ void run_stability_check(struct run *run, double load, bool final)
         run_fail(run, STATUS_VERDICT, text, when_text(run, load, when), 100.0 * found.share, place);
     }
     run_note(run, text, when_text(run, load, when), 100.0 * found.share, place);
-}
-
-void run_stability_left(const struct run *run)
-{
-    const struct stability *found = &run->model->system.stability;
-    char when[48], place[96];
-    if (found->left && !run->folds.seen && !run->stability.seen) {
-        run_note(run,
-                 "at %s the body leaves a state near equilibrium, most of all at %s: it buckles, wrinkles or "
-                 "snaps through, and the result may be one of several",
-                 when_text(run, found->left_load, when), node_text(run, found->left_node, place));
-    }
 }

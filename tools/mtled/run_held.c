@@ -109,7 +109,8 @@ void run_contacts_penetrate(struct run *run, double motion, double allowed, bool
     }
 }
 
-void run_contacts_touch(const struct run *run)
+/* Note rigid surfaces that the body has never touched. */
+static void judge_touch(const struct run *run)
 {
     const struct solid_system *system = &run->model->system;
     for (int64_t c = 0; c < system->contact_count; c++) {
@@ -123,7 +124,8 @@ void run_contacts_touch(const struct run *run)
     }
 }
 
-void run_sliding_judge(const struct run *run)
+/* Note a curved side that leaves its surface. */
+static void judge_sliding(const struct run *run)
 {
     const struct solid_system *system = &run->model->system;
     struct sliding_error worst;
@@ -321,7 +323,8 @@ static void mark_pressed(const struct run *run, const struct bodies *bodies, dou
     }
 }
 
-void run_check_lost(const struct run *run, double error_left)
+/* Note bodies that no contact presses any more. */
+static void judge_lost(const struct run *run, double error_left)
 {
     FREED_BY(bodies_free) struct bodies bodies = {0};
     if (run->model->system.contact_count == 0) {
@@ -339,4 +342,13 @@ void run_check_lost(const struct run *run, double error_left)
                  "may have slipped out of its contacts or turned over: frames show when",
                  told.body, told.what);
     }
+}
+
+void run_held_judge(const struct run *run, double error_left)
+{
+    judge_touch(run);
+    if (error_left >= 0.0) {
+        judge_lost(run, error_left);
+    }
+    judge_sliding(run);
 }

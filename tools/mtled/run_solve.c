@@ -37,10 +37,7 @@ static void judge_statics(struct run *run, const struct statics_report *report)
         run_stability_check(run, 1.0, true);
         run_contacts_penetrate(run, report->move, report->penetration_allowed, true);
         run_folds_judge(run);
-        run_stability_left(run);
-        run_contacts_touch(run);
-        run_check_lost(run, report->error * report->move);
-        run_sliding_judge(run);
+        run_held_judge(run, report->error * report->move);
         return;
     }
     if (report->outcome == STATICS_STALLED) {
@@ -287,8 +284,7 @@ static void judge_dynamic(struct run *run, const struct dynamics_report *report)
         }
         run_folds_judge(run);
         run_contacts_penetrate(run, largest_move, system_penetration_allowed(largest_move), true);
-        run_contacts_touch(run);
-        run_sliding_judge(run);
+        run_held_judge(run, -1.0);
         return;
     case DYNAMICS_INVERTED:
         run_fail(run, STATUS_VERDICT,
