@@ -260,6 +260,19 @@ static void find_points(const struct tool *tool, struct stream *stream, int dim,
                               &error));
 }
 
+/* Write the moved points, with the names that they have in their file. */
+static void write_landmarks(const struct tool *tool, int dim, const struct evaluated *points,
+                            const double *moved)
+{
+    struct output output;
+    if (dim != 3) {
+        tool_fail(tool, STATUS_INPUT, "-o %s: landmarks are points in 3D", tool->output);
+    }
+    TOOL_TRY(tool, output_open(&output, tool->output, false, &error));
+    landmarks_print(output.file, tool->output, points->at.count, moved, points->row, points->at.label);
+    TOOL_TRY(tool, output_end(&output, STATUS_OK, &error));
+}
+
 int main(int argc, char *argv[])
 {
     struct tool tool;
@@ -294,14 +307,7 @@ int main(int argc, char *argv[])
         put_deformed(&tool, &stream, dim, node_count, &points, &output);
     }
     if (writes_landmarks(&tool)) {
-        struct output landmarks; /* the moved points, with the names that they have in their file */
-        if (dim != 3) {
-            tool_fail(&tool, STATUS_INPUT, "-o %s: landmarks are points in 3D", tool.output);
-        }
-        TOOL_TRY(&tool, output_open(&landmarks, tool.output, false, &error));
-        landmarks_print(landmarks.file, tool.output, points.at.count,
-                        stream_find(&output, "x.deformed")->data, points.row, points.at.label);
-        TOOL_TRY(&tool, output_end(&landmarks, STATUS_OK, &error));
+        write_landmarks(&tool, dim, &points, stream_find(&output, "x.deformed")->data);
     } else {
         if (tool_given(&tool, "skip-outside")) {
             tool_put(&tool, &output, "points.row", TYPE_I8, points.at.count, 1, "", array_take(&points.row));

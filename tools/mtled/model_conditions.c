@@ -59,24 +59,6 @@ static enum status add_displacement(struct model *model, const struct scene_disp
     return STATUS_OK;
 }
 
-/* Set the fluid of a load, if its section has one. */
-static enum status set_fluid(const struct model *model, const struct scene_load *section, struct load *load,
-                             struct error *error)
-{
-    double length = hypot(hypot(section->gravity[0], section->gravity[1]), section->gravity[2]);
-    const double *gravity = length > 0.0 ? section->gravity : model->scene->gravity;
-    if (!(hypot(hypot(gravity[0], gravity[1]), gravity[2]) > 0.0)) {
-        return fail(error, STATUS_INPUT,
-                    "%s: density: a fluid without weight: give gravity here or in [scene]",
-                    section->label.where);
-    }
-    for (int a = 0; a < 3; a++) {
-        load->weight[a] = section->density * gravity[a];
-    }
-    load->is_fluid = true;
-    return STATUS_OK;
-}
-
 static enum status add_load(struct model *model, const struct scene_load *section, struct load *load,
                             struct error *error)
 {
@@ -87,8 +69,16 @@ static enum status add_load(struct model *model, const struct scene_load *sectio
     } else {
         RETURN_IF_ERROR(model_facets(model, &section->label, &section->facets, &load->facets, error));
     }
-    if (section->density > 0.0) {
-        RETURN_IF_ERROR(set_fluid(model, section, load, error));
+    if (section->density > 0.0) { /* a fluid */
+        const double *own = section->gravity;
+        const double *gravity = vector_dot(3, own, own) > 0.0 ? own : model->scene->gravity;
+        if (!(vector_dot(3, gravity, gravity) > 0.0)) {
+            return fail(error, STATUS_INPUT,
+                        "%s: density: a fluid without weight: give gravity here or in [scene]",
+                        section->label.where);
+        }
+        load->is_fluid = true;
+        add_scaled(3, section->density, gravity, load->weight);
     }
     return model_add_curve(model, &section->label, &section->curve, &load->curve, error);
 }

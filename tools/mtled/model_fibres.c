@@ -9,24 +9,6 @@
 #include <math.h>
 #include <string.h>
 
-/* rows[table->rows * (dim + entries)]: each point, and a (x) a of its unit direction a, in which the sign is
- * lost. */
-static enum status square_directions(const struct scene_material *section, const struct table *table, int dim,
-                                     double *rows, struct error *error)
-{
-    int count = dim * (dim + 1) / 2;
-    for (int64_t r = 0; r < table->rows; r++) {
-        const double *from = table->values + r * table->cols;
-        double *to = rows + r * (dim + count);
-        memcpy(to, from, (size_t)dim * sizeof *to);
-        if (!axis_square(dim, from + dim, to + dim)) {
-            return fail(error, STATUS_INPUT, "%s: fibres: %s:%jd: the direction has no length",
-                        section->label.where, section->fibres, table->line[r]);
-        }
-    }
-    return STATUS_OK;
-}
-
 /* The fibres of a section: a fit to the rows of its table, or else the stream's axis of each point. */
 struct source {
     const struct scene_material *section;
@@ -92,7 +74,16 @@ static enum status fit_table(const struct model *model, struct source *source, d
     FREED_BY(table_free) struct table table = {0};
     RETURN_IF_ERROR(table_read(source->section->fibres, 2 * dim, 2 * dim, &table, error));
     RETURN_IF_ERROR(NEW_ARRAY(rows, table.rows * (dim + count), error));
-    RETURN_IF_ERROR(square_directions(source->section, &table, dim, *rows, error));
+    for (int64_t r = 0; r < table.rows;
+         r++) { /* each point, and a (x) a of its direction, in which the sign is lost */
+        const double *from = table.values + r * table.cols;
+        double *to = *rows + r * (dim + count);
+        memcpy(to, from, (size_t)dim * sizeof *to);
+        if (!axis_square(dim, from + dim, to + dim)) {
+            return fail(error, STATUS_INPUT, "%s: fibres: %s:%jd: the direction has no length",
+                        source->section->label.where, source->section->fibres, table.line[r]);
+        }
+    }
     source->fit = (struct scattered_fit){.dim = dim,
                                          .value_count = count,
                                          .count = table.rows,

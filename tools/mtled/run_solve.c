@@ -312,6 +312,20 @@ static void judge_dynamic(struct run *run, const struct dynamics_report *report)
     }
 }
 
+/* Put the log as section `energy`. */
+static void put_energy(const struct run *run, const struct energy_log *log)
+{
+    _Static_assert(sizeof(struct energy) == ENERGY_COLUMNS * sizeof(double), "a row of numbers");
+    double *values = run_new_values(run, log->count * ENERGY_COLUMNS);
+    memcpy(values, log->rows, (size_t)log->count * sizeof *log->rows);
+    run_put(run, "energy", log->count, ENERGY_COLUMNS,
+            run->scene->dim == 2 ? "unit=s,J/m,J/m,J/m,J/m,J/m,1 "
+                                   "cols=time,kinetic,internal,contact,work,dissipated,error"
+                                 : "unit=s,J,J,J,J,J,1 "
+                                   "cols=time,kinetic,internal,contact,work,dissipated,error",
+            values);
+}
+
 static void run_dynamic(struct run *run)
 {
     const struct scene_solver *solver = &run->scene->solver;
@@ -345,15 +359,7 @@ static void run_dynamic(struct run *run)
     run_clear_progress(&run->display);
     tool_check(run->tool, status, &error);
     if (output->energy) {
-        _Static_assert(sizeof(struct energy) == ENERGY_COLUMNS * sizeof(double), "a row of numbers");
-        double *values = run_new_values(run, log.count * ENERGY_COLUMNS);
-        memcpy(values, log.rows, (size_t)log.count * sizeof *log.rows);
-        run_put(run, "energy", log.count, ENERGY_COLUMNS,
-                run->scene->dim == 2 ? "unit=s,J/m,J/m,J/m,J/m,J/m,1 "
-                                       "cols=time,kinetic,internal,contact,work,dissipated,error"
-                                     : "unit=s,J,J,J,J,J,1 "
-                                       "cols=time,kinetic,internal,contact,work,dissipated,error",
-                values);
+        put_energy(run, &log);
     }
     run->last_good = report.last_good;
     run->evaluations = report.force_evaluations;

@@ -41,19 +41,6 @@ static enum status check_curve(const struct contact_condition *condition, const 
     return STATUS_OK;
 }
 
-static enum status add_motion(const struct contact_condition *condition, const struct solid_system *system,
-                              struct rigid_motion *motion, struct error *error)
-{
-    *motion = condition->motion;
-    if (motion->moves) {
-        RETURN_IF_ERROR(rigid_motion_check(motion, system->dim, error));
-        RETURN_IF_ERROR(check_curve(condition, "curve", &system->curves[motion->translation_curve], error));
-        RETURN_IF_ERROR(
-            check_curve(condition, "angle_curve", &system->curves[motion->rotation_curve], error));
-    }
-    return STATUS_OK;
-}
-
 /* The points of a contact. In a relaxation and `between` facets of the body, they are quadrature points with
  * multipliers at the nodes. If the facets do not resolve the boundary, its position between the nodes is not
  * known; then the points are boundary averages, raised to their nodes. Dynamics uses boundary averages too,
@@ -80,24 +67,6 @@ static enum status build_points(const struct assembly *input, const struct facet
     return STATUS_OK;
 }
 
-/* (*own)[] and (*other)[], to be freed: heights of the boundaries above the points of the condition's facets,
- * and of those that these press on. */
-static enum status find_heights(const struct assembly *input, const struct contact_condition *condition,
-                                const struct boundary_averages *points,
-                                const struct boundary_averages *averages, double **own, double **other,
-                                struct error *error)
-{
-    int dim = input->cells.dim;
-    const double *X = input->face_table.x;
-    FREED_BY(boundary_averages_free) struct boundary_averages facing = {0};
-    FREED_BY(boundary_averages_free) struct boundary_averages facing_averages = {0};
-    RETURN_IF_ERROR(build_points(input, &condition->opposite, true, &facing, &facing_averages, error));
-    RETURN_IF_ERROR(NEW_ARRAY(own, points->count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(other, facing.count, error));
-    RETURN_IF_ERROR(contact_rest_heights(dim, points, averages, X, *own, error));
-    return contact_rest_heights(dim, &facing, &facing_averages, X, *other, error);
-}
-
 /* Contact between facets of the body. A boundary that touches itself is that of its facets. */
 static enum status add_between(const struct assembly *input, const struct contact_condition *condition,
                                const struct boundary_averages *points,
@@ -105,6 +74,7 @@ static enum status add_between(const struct assembly *input, const struct contac
                                struct error *error)
 {
     FREED_BY(opposite_free) struct opposite opposite = {0};
+    FREED_BY(boundary_averages_free) struct boundary_averages facing = {0}, facing_averages = {0};
     SCRATCH double *own = NULL, *other = NULL;
     const struct cells *cells = &input->cells;
     bool any, itself = condition->facets.facet == condition->opposite.facet;
@@ -113,8 +83,13 @@ static enum status add_between(const struct assembly *input, const struct contac
     NEW_SCRATCH(int32_t, part, cells->node_count, error);
     RETURN_IF_ERROR(cells_parts(cells, of_cell, &bodies, error));
     RETURN_IF_ERROR(nodes_parts(cells, of_cell, part, error));
-    if (!itself) {
-        RETURN_IF_ERROR(find_heights(input, condition, points, averages, &own, &other, error));
+    if (!itself) { /* heights of the boundaries above the points of the facets, and of those that these press
+                      on */
+        RETURN_IF_ERROR(build_points(input, &condition->opposite, true, &facing, &facing_averages, error));
+        RETURN_IF_ERROR(NEW_ARRAY(&own, points->count, error));
+        RETURN_IF_ERROR(NEW_ARRAY(&other, facing.count, error));
+        RETURN_IF_ERROR(contact_rest_heights(cells->dim, points, averages, cells->x, own, error));
+        RETURN_IF_ERROR(contact_rest_heights(cells->dim, &facing, &facing_averages, cells->x, other, error));
     }
     RETURN_IF_ERROR(opposite_build(&input->face_table, &condition->opposite, part, itself, &opposite, error));
     RETURN_IF_ERROR(contact_between_build(points, averages, cells->dim, cells->node_count,
@@ -174,7 +149,14 @@ static enum status add_contact(const struct assembly *input, int32_t number, str
     if (condition->friction > 0.0) {
         RETURN_IF_ERROR(friction_build(contact, condition->friction, input->in_time, error));
     }
-    return add_motion(condition, system, &contact->motion, error);
+    struct rigid_motion *motion = &contact->motion;
+    *motion = condition->motion;
+    if (!motion->moves) {
+        return STATUS_OK;
+    }
+    RETURN_IF_ERROR(rigid_motion_check(motion, system->dim, error));
+    RETURN_IF_ERROR(check_curve(condition, "curve", &system->curves[motion->translation_curve], error));
+    return check_curve(condition, "angle_curve", &system->curves[motion->rotation_curve], error);
 }
 
 enum status assembly_add_contacts(const struct assembly *input, struct solid_system *system,

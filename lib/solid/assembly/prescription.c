@@ -32,21 +32,6 @@ static double jump(const struct nodal_constraint *a, const struct nodal_constrai
     return fabs(along) > 1.0 - 1e-9 ? fabs(b->value - copysign(a->value, along * a->value)) : 0.0;
 }
 
-/* Compare the values of two conditions: STATUS_OK if they agree, else STATUS_INPUT and the message. */
-static enum status compare(const struct assembly *input, const struct nodal_constraint *first,
-                           const struct nodal_constraint *second, double most, struct error *error)
-{
-    char place[96];
-    if (jump(first, second, input->cells.dim) <= COARSE_ROUND_OFF * most) {
-        return STATUS_OK;
-    }
-    point_text(input->cells.dim, input->cells.x + (int64_t)second->node * input->cells.dim, place);
-    return fail(error, STATUS_INPUT,
-                "%s: node %d at %s is prescribed twice: %.10g m here, %.10g m in [displacement %s]",
-                input->conditions[second->condition].where, second->node, place, second->value, first->value,
-                input->conditions[first->condition].name);
-}
-
 enum status nodal_constraints_check(const struct assembly *input, struct nodal_constraints *nodal_constraints,
                                     struct error *note, struct error *error)
 {
@@ -64,11 +49,18 @@ enum status nodal_constraints_check(const struct assembly *input, struct nodal_c
         for (int64_t a = b - 1; a >= 0 && nodal_constraints->list[a].node == second->node; a--) {
             const struct nodal_constraint *first = &nodal_constraints->list[a];
             double most = fmax(largest[first->condition], largest[second->condition]);
+            int dim = input->cells.dim;
+            double apart = jump(first, second, dim);
             if (first->condition == second->condition ||
-                compare(input, first, second, fmax(most, least_size * input->extent), error) == STATUS_OK) {
+                apart <= COARSE_ROUND_OFF * fmax(most, least_size * input->extent)) {
                 continue;
             }
-            if (!(jump(first, second, input->cells.dim) <= largest_jump * most)) {
+            (void)fail(error, STATUS_INPUT,
+                       "%s: node %d at %s is prescribed twice: %.10g m here, %.10g m in [displacement %s]",
+                       input->conditions[second->condition].where, second->node,
+                       POINT_TEXT(dim, input->cells.x + (int64_t)second->node * dim), second->value,
+                       first->value, input->conditions[first->condition].name);
+            if (!(apart <= largest_jump * most)) {
                 return STATUS_INPUT;
             }
             if (note->text[0] == '\0') {
