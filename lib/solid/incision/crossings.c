@@ -98,7 +98,9 @@ static enum status list_pairs(const struct cut *cut, enum level level, struct cr
             }
         }
     }
-    qsort(list->item, (size_t)list->count, sizeof *list->item, split_compare);
+    if (list->count > 0) {
+        qsort(list->item, (size_t)list->count, sizeof *list->item, split_compare);
+    }
     int64_t kept = 0;
     for (int64_t i = 0; i < list->count; i++) {
         if (i == 0 || split_compare(&list->item[i], &list->item[i - 1]) != 0) {
