@@ -8,7 +8,7 @@
 #include <string.h>
 
 /* An increment prescribes a motion of this many spacings. */
-static const double prescribed_spacings = 0.7;
+static const double prescribed_spacings = 1.4;
 /* By the body's size: a step moves no node by more than this. */
 static const double most_of_size = 0.1;
 /* The estimated error at which the load grows on after an increment whose model had no minimum. */
@@ -61,10 +61,10 @@ static bool step(struct newton *n, struct error *error)
         return false;
     }
     if (loads(n)) {
-        double from = n->load.now, change = fmin(n->load.next, n->load.hold - from);
-        if (newton_begin_increment(n, from, change)) {
+        double from = n->load.now, to = newton_load_after(n, from, n->load.next);
+        if (newton_begin_increment(n, from, to)) {
             n->load.waits = false;
-            return newton_take_increment(n, from, change);
+            return newton_take_increment(n, from, to);
         }
         newton_set_load(n, from, from);
         (void)newton_evaluate(n, n->u, &n->at_u);
@@ -72,7 +72,7 @@ static bool step(struct newton *n, struct error *error)
             system_accept(n->system);
             newton_touch(n, n->u, &n->at_u);
         }
-        n->load.next = 0.5 * change;
+        n->load.next = 0.5 * newton_span(n, from, to);
         n->load.corrections++;
         n->load.waits = true;
         return n->report->error < error_waiting ? newton_leave(n) : newton_correct(n);
@@ -99,7 +99,7 @@ static enum statics_outcome iterate(struct newton *n, struct error *error)
             newton_let_slip(n);
             newton_estimate(n);
         }
-        newton_note_leaving(n);
+        newton_keep_to_path(n);
         bool ends = newton_ends(n, stuck, &outcome, error);
         if (n->failure != STATUS_OK) {
             return STATICS_STOPPED;
@@ -133,7 +133,7 @@ static enum status begin(struct newton *n, struct error *error)
     n->load.next = n->load.most;
     n->load.hold = statics_load_to_hold(n->options, 0);
     n->friction.rests = true;
-    n->near.error = n->verdict.pressures_lack = INFINITY;
+    n->path.reach = n->verdict.pressures_lack = INFINITY;
     return measure(n, error);
 }
 

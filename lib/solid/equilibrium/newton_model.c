@@ -283,7 +283,6 @@ bool newton_solve_model(struct newton *n, double of_last, double share, double r
         double most = (radius - length) / newton_longest(n, n->cg.search, NULL);
         double way = lower(n, down, most);
         if (way >= most) {
-            n->near.falls |= vector_dot(n->size, n->cg.search, n->cg.product) < 0.0;
             return false;
         }
         add_step(&lanczos, way, fmax(0.0, n->directions.part));

@@ -32,9 +32,9 @@ struct newton_directions {
 /* The load, a share of the whole. */
 struct newton_load {
     double now;            /* that at u; */
-    double next, most;     /* the next increment, and the largest; */
+    double next, most;     /* the span of the next increment, and the largest, see newton_span; */
     double hold;           /* where the next equilibrium is reported */
-    double last, *move;    /* the last increment, and its change of u; 0: none yet */
+    double last, *move;    /* the span of the last increment, and its change of u; 0: none yet */
     double *factor_change; /* of the load curves */
     bool waits;            /* until u is almost in equilibrium */
     int64_t corrections;   /* since the last increment */
@@ -78,10 +78,11 @@ struct newton_progress {
     double largest_move; /* so far, of a node, m */
 };
 
-/* The state of the least error at this load, where that is near equilibrium. */
-struct newton_near {
-    double *u, error; /* INFINITY: none was */
-    bool falls;       /* since then a model has had no minimum: the stiffness is negative somewhere */
+/* Where corrections may take the body from the state after an increment; farther is a jump. */
+struct newton_path {
+    double *u, reach; /* that state; m, INFINITY: anywhere */
+    double from;      /* the load before */
+    bool returned;    /* to the state before, where u is */
 };
 
 /* Lengths, m. */
@@ -122,7 +123,7 @@ struct newton {
     bool slackens; /* a material's fibres may */
     struct newton_friction friction;
     struct newton_progress progress;
-    struct newton_near near;
+    struct newton_path path;
     struct newton_scale scale;
     struct newton_verdict verdict;
     enum status failure;
@@ -191,12 +192,18 @@ double newton_longest(const struct newton *n, const double *x, int64_t *node);
 /* Set the load; n->load.factor_change becomes the change of the load curves from those at load `from`. */
 void newton_set_load(struct newton *n, double from, double load);
 
+/* How far loads and prescribed motions go between two loads: the largest change of a curve, by its largest
+ * value. The first load after `from` at which that is `span`, or which is to be reported; of 0, as where no
+ * curve changes, n->load.most. */
+double newton_span(const struct newton *n, double from, double to);
+double newton_load_after(const struct newton *n, double from, double span);
+
 /* Increase the load and find the step of the model there. False where that has no minimum. */
-bool newton_begin_increment(struct newton *n, double from, double change);
+bool newton_begin_increment(struct newton *n, double from, double to);
 
 /* Go along that step with the load, not so far that the body would move too far or cells would invert. False
  * where no increment is small enough. */
-bool newton_take_increment(struct newton *n, double from, double change);
+bool newton_take_increment(struct newton *n, double from, double to);
 
 /* A Newton step at this load. False where not even a short one is admitted, and u is not in equilibrium. */
 bool newton_correct(struct newton *n);
@@ -237,10 +244,19 @@ bool newton_ends(struct newton *n, bool stuck, enum statics_outcome *outcome, st
  * memory. */
 MUST_CHECK enum status newton_judge_stability(struct newton *n, struct error *error);
 
-/* Note in system->stability where the body leaves a state near equilibrium, at the same load, by more than
- * the error of that state, after a model without a minimum. Not with contacts, by whose changes models have
- * none. */
-void newton_note_leaving(struct newton *n);
+/* ---- newton_path.c ---- */
+
+/* The state u has followed an increment of the load from `from`. */
+void newton_begin_path(struct newton *n, double from);
+
+/* Along a path of equilibria, corrections are short beside the increment that they follow. Where they are
+ * not, the body has jumped: return to the state before, and let a shorter increment follow; after a short
+ * one, or where the state before was none of equilibrium, let it leave the path. */
+void newton_keep_to_path(struct newton *n);
+
+/* The body leaves the path here, most of all at a node: note that in system->stability. Not with contacts,
+ * which open and close, nor in time, nor from a given start. */
+void newton_leave_path(struct newton *n, int64_t node);
 
 /* ---- newton_state.c: memory, checkpoints, progress and frames ---- */
 

@@ -11,8 +11,6 @@
 
 /* Of the residual's square that is left, by the share of one mode of a pseudo-random one. */
 static const double share_left = 0.1;
-/* A body has left a state near equilibrium where it goes as far from it as this, by the error there. */
-static const double far_by_error = 2.0;
 /* Asymmetry of the stiffness that is more than the round-off of differences. */
 static const double asymmetric = 0.01;
 
@@ -224,32 +222,4 @@ enum status newton_judge_stability(struct newton *n, struct error *error)
     }
     (void)newton_evaluate(n, n->u, &n->at_u); /* the last evaluation again */
     return STATUS_OK;
-}
-
-/* Whether u is near equilibrium, but not at rest. */
-static bool is_near(const struct newton *n)
-{
-    double error = n->report->error;
-    return error > 0.0 && error < NEWTON_ERROR_BETWEEN && newton_has_pressures(n);
-}
-
-void newton_note_leaving(struct newton *n)
-{
-    struct stability *stability = &n->system->stability;
-    if (stability->left || n->system->contact_count > 0) {
-        return;
-    }
-    if (n->near.falls && isfinite(n->near.error)) {
-        for (int64_t i = 0; i < n->size; i++) {
-            n->cg.scaled[i] = n->u[i] - n->near.u[i];
-        }
-        double way = newton_longest(n, n->cg.scaled, &stability->left_node);
-        stability->left = way > far_by_error * n->near.error * newton_longest(n, n->near.u, NULL);
-        stability->left_load = stability->left ? statics_load_share(n->system, n->load.now) : 0.0;
-    }
-    if (n->load.corrections == 0 || n->report->error < n->near.error) {
-        n->near.error = is_near(n) ? n->report->error : INFINITY;
-        n->near.falls = false;
-        memcpy(n->near.u, n->u, (size_t)n->size * sizeof *n->near.u);
-    }
 }

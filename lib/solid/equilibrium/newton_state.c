@@ -10,7 +10,7 @@ enum status newton_allocate(struct newton *n, struct error *error)
     double **vectors[] = {&n->at_u.smooth,  &n->at_u.contact,  &n->at_trial.smooth, &n->at_trial.contact,
                           &n->model.smooth, &n->model.contact, &n->trial,           &n->step.move,
                           &n->cg.search,    &n->cg.product,    &n->cg.scaled,       &n->load.move,
-                          &n->watch.start,  &n->near.u,        &n->progress.u};
+                          &n->watch.start,  &n->path.u,        &n->progress.u};
     RETURN_IF_ERROR(preconditioner_build(n->system, true, &n->preconditioner, error));
     for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++) {
         RETURN_IF_ERROR(NEW_ARRAY(vectors[i], n->size, error));
@@ -23,7 +23,7 @@ void newton_release(struct newton *n)
 {
     FREE_ALL(n->at_u.smooth, n->at_u.contact, n->at_trial.smooth, n->at_trial.contact, n->model.smooth,
              n->model.contact, n->trial, n->step.move, n->cg.search, n->cg.product, n->cg.scaled,
-             n->load.move, n->watch.start, n->near.u, n->progress.u, n->load.factor_change);
+             n->load.move, n->watch.start, n->path.u, n->progress.u, n->load.factor_change);
     newton_free_directions(n);
     preconditioner_free(&n->preconditioner);
 }
@@ -60,9 +60,10 @@ enum status newton_visit(void *run, const struct state *state, struct error *err
         {"marked", STATE_NUMBERS, n->progress.u, n->size},
         {"best_load", STATE_NUMBERS, &n->progress.load, 1},
         {"best_error", STATE_NUMBERS, &n->progress.error, 1},
-        {"nearest", STATE_NUMBERS, n->near.u, n->size},
-        {"nearest_error", STATE_NUMBERS, &n->near.error, 1},
-        {"falls", STATE_FLAGS, &n->near.falls, 1},
+        {"path", STATE_NUMBERS, n->path.u, n->size},
+        {"reach", STATE_NUMBERS, &n->path.reach, 1},
+        {"from", STATE_NUMBERS, &n->path.from, 1},
+        {"returned", STATE_FLAGS, &n->path.returned, 1},
         {"best_step", STATE_COUNTS, &n->progress.step, 1},
         {"moves", STATE_COUNTS, &n->progress.moves, 1},
         {"corrections", STATE_COUNTS, &n->load.corrections, 1},

@@ -26,6 +26,8 @@ static const double least_radius = 1e-3; /* by the spacing: shorter steps are no
 static const double least_left = 0.7;
 /* Of a contact point past what is opposite, by its width: what is opposite after the step is still found. */
 static const double step_by_width = 0.5;
+/* Places at which the curves are looked at for an increment of the load. */
+enum { LOOKS = 100 };
 
 bool newton_held_by_friction(const struct newton *n)
 {
@@ -97,10 +99,40 @@ static void take_multipliers(struct newton *n)
     }
 }
 
-bool newton_begin_increment(struct newton *n, double from, double change)
+double newton_span(const struct newton *n, double from, double to)
 {
-    double target = n->load.hold;
-    newton_set_load(n, from, from + change > target * (1.0 - 1e-12) ? target : from + change);
+    double span = 0.0;
+    for (int64_t c = 0; c < n->system->curve_count; c++) {
+        double largest = curve_largest(&n->system->curves[c]);
+        double change = system_load_factor(n->system, c, to) - system_load_factor(n->system, c, from);
+        span = fmax(span, largest > 0.0 ? fabs(change) / largest : 0.0);
+    }
+    return span;
+}
+
+double newton_load_after(const struct newton *n, double from, double span)
+{
+    double low = from, high = from, part = (n->load.hold - from) / LOOKS;
+    span = span > 0.0 ? span : n->load.most;
+    while (high < n->load.hold) {
+        low = high;
+        high = high + part < n->load.hold * (1.0 - 1e-12) ? high + part : n->load.hold;
+        if (newton_span(n, from, high) > span * (1.0 + 1e-9)) {
+            break;
+        }
+        low = high;
+    }
+    while (high - low > 1e-9 * (high - from)) {
+        double middle = 0.5 * (low + high);
+        *(newton_span(n, from, middle) > span ? &high : &low) = middle;
+    }
+    return high;
+}
+
+bool newton_begin_increment(struct newton *n, double from, double to)
+{
+    double span = newton_span(n, from, to);
+    newton_set_load(n, from, to);
     memset(n->step.move, 0, (size_t)n->size * sizeof *n->step.move);
     meet_conditions(n);
     system_predict_friction(n->system, newton_held_by_friction(n));
@@ -109,7 +141,7 @@ bool newton_begin_increment(struct newton *n, double from, double change)
         preconditioner_follow(&n->preconditioner, n->system);
     }
     bool continues = n->load.last != 0.0;
-    bool whole = newton_solve_model(n, continues ? change / n->load.last : 0.0,
+    bool whole = newton_solve_model(n, continues ? span / n->load.last : 0.0,
                                     continues ? left : left_at_first, far * n->scale.body);
     n->step.length = newton_longest(n, n->step.move, NULL);
     take_multipliers(n);
@@ -123,14 +155,14 @@ static bool lacks_less(const struct newton *n)
     return !n->step.collapses && newton_longest(n, n->cg.scaled, NULL) <= n->step.length;
 }
 
-bool newton_take_increment(struct newton *n, double from, double change)
+bool newton_take_increment(struct newton *n, double from, double to)
 {
-    double share = most_share(n), part = 1.0;
+    double share = most_share(n), part = 1.0, span = newton_span(n, from, to);
     for (;; share = 0.5) {
         if (share < 1.0) {
             part *= share;
             shorten(n, share);
-            newton_set_load(n, from, from + part * change);
+            newton_set_load(n, from, newton_load_after(n, from, part * span));
             meet_conditions(n);
         }
         if (try_step(n) || lacks_less(n)) {
@@ -142,15 +174,16 @@ bool newton_take_increment(struct newton *n, double from, double change)
         }
     }
     n->step.length = part < 1.0 ? INFINITY : n->step.length;
-    n->load.last = n->load.now - from;
+    n->load.last = newton_span(n, from, n->load.now);
     memcpy(n->load.move, n->step.move, (size_t)n->size * sizeof *n->load.move);
     take_step(n);
-    n->load.next = fmin(n->load.most, fmax(2.0 * n->load.last, shorter * change));
+    n->load.next = fmin(n->load.most, fmax(2.0 * n->load.last, shorter * span));
     n->report->loading_steps++;
     n->load.corrections = n->watch.steps = 0;
     n->watch.above = 0.0;
     n->verdict.pressures_lack = INFINITY;
     n->verdict.judged = n->friction.rests = n->friction.settled = false;
+    newton_begin_path(n, from);
     return true;
 }
 
@@ -295,8 +328,10 @@ bool newton_leave(struct newton *n)
     if (!(newton_curvature(n) < 0.0)) {
         return true;
     }
+    int64_t node;
     memcpy(n->step.move, n->cg.search, (size_t)n->size * sizeof *n->step.move);
-    n->step.length = newton_longest(n, n->step.move, NULL);
+    n->step.length = newton_longest(n, n->step.move, &node);
+    newton_leave_path(n, node);
     shorten(n, leaving * n->scale.spacing / n->step.length);
     n->step.square = INFINITY;
     bool good = try_step(n);

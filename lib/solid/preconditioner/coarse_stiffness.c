@@ -11,7 +11,7 @@
 #include <string.h>
 
 enum { NODES_FOR_THREAD = 200 }; /* see chunks_of */
-enum { MOST_SUMS = 8 };          /* chunks, each of which has a matrix of its own */
+enum { MOST_SUMS = 4 };          /* chunks, each of which has a matrix of its own */
 
 static void add_node(const struct body *body, int32_t n, struct block_row *row, struct coarse_rows *rows,
                      double *matrix)

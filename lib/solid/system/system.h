@@ -38,7 +38,7 @@ struct cost {
 };
 
 /* The least eigenvalue of M^-1 K at the last equilibrium, see newton_judge_stability; and what was seen on
- * the way, see newton_note_leaving. */
+ * the way, see newton_keep_to_path. */
 struct stability {
     double least;      /* relative to the largest; negative: unstable; 0: not computed, or below round-off */
     int64_t node;      /* of an unstable state: where its mode is largest */
@@ -102,8 +102,9 @@ MUST_CHECK enum status system_state(struct solid_system *system, const struct st
  * Call this before the first evaluation. STATUS_SYSTEM: memory. */
 MUST_CHECK enum status system_start(struct solid_system *system, const double *u, struct error *error);
 
-/* Values of all curves at s within [0, 1], into system->factor; for s from -1 to 0 they grow from 0 to those
- * at 0. Whether any of these is not 0. */
+/* The value of a curve at s within [0, 1]; for s from -1 to 0 it grows from 0 to that at 0. Those of all
+ * curves, into system->factor. Whether any is not 0 at 0. */
+double system_load_factor(const struct solid_system *system, int64_t curve, double s);
 void system_load_factors(struct solid_system *system, double s);
 bool system_begins_loaded(const struct solid_system *system);
 

@@ -55,10 +55,15 @@ double system_longest_change(const struct solid_system *system)
     return longest;
 }
 
+double system_load_factor(const struct solid_system *system, int64_t curve, double s)
+{
+    return fmin(1.0, 1.0 + s) * curve_value(&system->curves[curve], s);
+}
+
 void system_load_factors(struct solid_system *system, double s)
 {
     for (int64_t i = 0; i < system->curve_count; i++) {
-        system->factor[i] = fmin(1.0, 1.0 + s) * curve_value(&system->curves[i], s);
+        system->factor[i] = system_load_factor(system, i, s);
     }
 }
 
