@@ -122,7 +122,7 @@ double newton_load_after(const struct newton *n, double from, double span)
         }
         low = high;
     }
-    while (high - low > 1e-9 * (high - from)) {
+    while (high - low > 1e-9 * part) { /* a curve may leap within that */
         double middle = 0.5 * (low + high);
         *(newton_span(n, from, middle) > span ? &high : &low) = middle;
     }
@@ -177,7 +177,8 @@ bool newton_take_increment(struct newton *n, double from, double to)
     n->load.last = newton_span(n, from, n->load.now);
     memcpy(n->load.move, n->step.move, (size_t)n->size * sizeof *n->load.move);
     take_step(n);
-    n->load.next = fmin(n->load.most, fmax(2.0 * n->load.last, shorter * span));
+    n->load.next =
+        fmin(n->load.most, part < 1.0 ? fmax(2.0 * n->load.last, shorter * span) : 2.0 * n->load.next);
     n->report->loading_steps++;
     n->load.corrections = n->watch.steps = 0;
     n->watch.above = 0.0;
