@@ -6,7 +6,6 @@
 #include "base/options.h"
 #include "base/vector.h"
 #include "io/stream/sections.h"
-#include "io/vtk/vtk.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -199,21 +198,21 @@ static bool is_of_points(const char *name)
     return any;
 }
 
-static bool is_field(const struct vtk_mesh *mesh, const struct section *section, bool *of_cells)
+static bool is_field(const struct cells *cells, const struct section *section, bool *of_cells)
 {
-    bool fits_cells = mesh->node != NULL && section->rows == mesh->cell_count;
-    bool fits_nodes = section->rows == mesh->node_count;
+    bool fits_cells = cells->count > 0 && section->rows == cells->count;
+    bool fits_nodes = section->rows == cells->node_count;
     *of_cells = fits_cells && (is_of_points(section->name) || !fits_nodes);
     return (fits_cells || fits_nodes) && section->cols > 0;
 }
 
 static void choose_field(struct plot *plot, const struct section *section, int64_t frame)
 {
-    struct vtk_field field = {.section = section};
+    struct plot_field field = {.section = section};
     size_t length;
     int64_t of = frame_of(section->name, &length);
     bool is_wanted = of == frame || (of == FRAME_NONE && is_static(section->name));
-    if (is_wanted && is_field(&plot->mesh, section, &field.of_cells)) {
+    if (is_wanted && is_field(&plot->cells, section, &field.of_cells)) {
         field.name =
             begins_with(section->name, DERIVED_GROUP) ? strchr(section->attributes, '=') + 1 : section->name;
         if (of != FRAME_NONE) {
@@ -272,25 +271,13 @@ enum status plot_time(const struct plot *plot, int64_t frame, double *time, stru
     return STATUS_OK;
 }
 
-static enum status find_mesh(struct plot *plot, struct error *error)
-{
-    struct cells *cells = &plot->cells;
-    struct groups *regions = &plot->regions;
-    RETURN_IF_ERROR(stream_cells(&plot->stream, false, cells, error));
-    plot->mesh = (struct vtk_mesh){.dim = cells->dim,
-                                   .node_count = cells->node_count,
-                                   .x = cells->x,
-                                   .cell_count = cells->count,
-                                   .node = cells->count > 0 ? cells->node : NULL};
-    RETURN_IF_ERROR(cells->count > 0 ? stream_groups(&plot->stream, GROUP_REGION, false, regions, error)
-                                     : STATUS_OK);
-    plot->mesh.regions = regions->names;
-    return STATUS_OK;
-}
-
 enum status plot_find(struct plot *plot, struct error *error)
 {
-    RETURN_IF_ERROR(find_mesh(plot, error));
+    struct cells *cells = &plot->cells;
+    RETURN_IF_ERROR(stream_cells(&plot->stream, false, cells, error));
+    RETURN_IF_ERROR(cells->count > 0
+                        ? stream_groups(&plot->stream, GROUP_REGION, false, &plot->regions, error)
+                        : STATUS_OK);
     plot->given = plot->stream.section_count;
     return find_frames(plot, error);
 }
