@@ -15,7 +15,7 @@ static void find_place(const struct warp_job *job, int64_t v, const double x[3],
     if (job->owner[v] < 0) {
         return;
     }
-    if (job->request->inverse) {
+    if (job->inverse) {
         motion_place(job->motion, job->owner[v], x, place);
     } else if (!motion_inverse(job->motion, job->owner[v], x, job->tolerance, place, &residual)) {
         report->inexact++;
@@ -25,46 +25,23 @@ static void find_place(const struct warp_job *job, int64_t v, const double x[3],
     report->inconsistency = fmax(report->inconsistency, residual);
 }
 
-static const double *value_of(const struct warp_values *values, double label)
-{
-    for (int i = 0; i < values->count; i++) {
-        if (values->label[i] == label) {
-            return &values->value[i];
-        }
-    }
-    return values->others ? &values->other : NULL;
-}
-
-/* The value that the options give a voxel outside of the moved body; NULL: none. */
-static const double *given_value(const struct warp_job *job, const double voxel[3], bool vacated)
-{
-    const struct warp_request *request = job->request;
-    double old[4], label = NAN;
-    if (job->source->components == 1 && image_sample(job->source, IMAGE_NEAREST, voxel, old)) {
-        label = image_whole(job->source, *old);
-    }
-    const double *value = vacated ? value_of(&request->vacated, label) : NULL;
-    return value != NULL ? value : value_of(&request->fill, label);
-}
-
 /* Set the value of the moved image at voxel v, that of the source at `place`. */
 static void put_value(const struct warp_job *job, int64_t v, const double place[3],
                       struct warp_report *report)
 {
-    const struct warp_values *fill = &job->request->fill;
     size_t components = job->result->components;
     double voxel[3], *value = job->result->values + (size_t)v * components;
-    bool outside = job->owner[v] < 0, vacated = outside && job->other != NULL && job->other[v] >= 0;
-    image_map(&job->source_voxel[0][0], place, voxel);
-    const double *given = outside ? given_value(job, voxel, vacated) : NULL;
+    bool outside = job->owner[v] < 0, vacated = outside && job->other[v] >= 0;
+    double given = !outside ? NAN : vacated && !isnan(job->vacated) ? job->vacated : job->fill;
     report->vacated += vacated;
-    report->left += vacated && given == NULL;
-    if (given == NULL && image_sample(job->source, job->request->method, voxel, value)) {
+    report->left += vacated && isnan(given);
+    image_map(&job->source_voxel[0][0], place, voxel);
+    if (isnan(given) && image_sample(job->source, job->method, voxel, value)) {
         return;
     }
-    report->beyond += given == NULL;
+    report->beyond += isnan(given);
     for (size_t c = 0; c < components; c++) {
-        value[c] = given != NULL ? *given : fill->others ? fill->other : 0;
+        value[c] = !isnan(given) ? given : isnan(job->fill) ? 0 : job->fill;
     }
 }
 
@@ -93,19 +70,16 @@ static void do_row(const struct warp_job *job, int64_t row, struct warp_report *
 void warp_voxels(const struct warp_job *job, struct warp_report *report)
 {
     int64_t rows = (int64_t)(job->result->size[1] * job->result->size[2]);
-    int64_t moved = 0, vacated = 0, left = 0, beyond = 0, inexact = 0;
-    double farthest = 0, inconsistency = 0;
-#pragma omp parallel for schedule(dynamic, 16) reduction(+ : moved, vacated, left, beyond, inexact)                \
-    reduction(max : farthest, inconsistency)
+#pragma omp parallel for schedule(dynamic, 16)
     for (int64_t row = 0; row < rows; row++) {
         struct warp_report own = {0};
         do_row(job, row, &own);
-        left += own.left;
-        moved += own.moved, vacated += own.vacated, beyond += own.beyond, inexact += own.inexact;
-        farthest = fmax(farthest, own.farthest);
-        inconsistency = fmax(inconsistency, own.inconsistency);
+#pragma omp critical
+        {
+            report->moved += own.moved, report->vacated += own.vacated, report->left += own.left;
+            report->beyond += own.beyond, report->inexact += own.inexact;
+            report->farthest = fmax(report->farthest, own.farthest);
+            report->inconsistency = fmax(report->inconsistency, own.inconsistency);
+        }
     }
-    report->left = left;
-    report->moved = moved, report->vacated = vacated, report->beyond = beyond, report->inexact = inexact;
-    report->farthest = farthest, report->inconsistency = inconsistency;
 }

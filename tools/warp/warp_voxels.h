@@ -5,23 +5,6 @@
 
 #include "approx/field/motion.h"
 
-/* Values for voxels outside of the moved body, by their label in the image. */
-enum { WARP_MOST_LABELS = 256 };
-struct warp_values {
-    int count;
-    double label[WARP_MOST_LABELS], value[WARP_MOST_LABELS];
-    bool others; /* all other voxels have the value: */
-    double other;
-};
-
-/* The options of a run. */
-struct warp_request {
-    enum image_method method;
-    bool field, inverse, verbose;
-    struct warp_values fill, vacated;
-    char section[32]; /* u, u.frame.K */
-};
-
 /* The outcome: numbers of voxels, and largest values. */
 struct warp_report {
     int64_t moved, vacated, beyond; /* in the moved body; uncovered; with a place outside of the image */
@@ -33,7 +16,9 @@ struct warp_report {
 
 /* The input of the loop over voxels. */
 struct warp_job {
-    const struct warp_request *request;
+    enum image_method method;
+    bool inverse;
+    double fill, vacated;       /* values outside of the moved body, and where it has been; NAN: not given */
     const struct image *source; /* NULL: the field is written */
     double source_voxel[3][4];
     const struct motion *motion;
@@ -44,5 +29,5 @@ struct warp_job {
     struct image *result;
 };
 
-/* Find the value of each voxel of the result, and count. */
+/* Find the value of each voxel of the result, and add to the report. */
 void warp_voxels(const struct warp_job *job, struct warp_report *report);
