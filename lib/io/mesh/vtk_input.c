@@ -11,8 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Unstructured grids of VTK: an array of the cells tells the regions, arrays of the points the sets of tovtk.
- */
+/* ---- groups: an array of the cells tells the regions, arrays of the points the sets of tovtk ---- */
 
 /* An array that numbers the cells tells no regions: all of more than a few values are different. */
 #define FEW_CELLS 10
@@ -174,7 +173,7 @@ static void add_sets(struct vtk_input *v)
     }
 }
 
-/* Group elements by the array of the regions, add those of sets: all cells are there. (vtk_groups.c) */
+/* Group elements by the array of the regions, add those of sets: all cells are there. */
 static void vtk_add_groups(struct vtk_input *v)
 {
     const struct vtk_array *array = v->r->status == STATUS_OK ? find_regions(v) : NULL;
@@ -191,8 +190,9 @@ static bool begins(const char *name, const char *begin)
     return strncmp(name, begin, strlen(begin)) == 0;
 }
 
-bool vtk_is_wanted(struct vtk_input *v, const struct vtk_array *array, const struct nifti_type *type)
+bool vtk_is_wanted(struct vtk_input *v, const struct vtk_array *array)
 {
+    const struct nifti_type *type = array->type;
     const char *asked = v->r->region_array; /* its numbers may be of a real type */
     bool is_asked = array->kind == VTK_OF_CELLS && asked != NULL && strcmp(array->name, asked) == 0;
     bool is_whole = type != NULL && type->most > type->least;
@@ -227,10 +227,9 @@ struct vtk_array *vtk_add(struct vtk_input *v, const struct vtk_array *array, in
     return r->status == STATUS_OK ? added : NULL;
 }
 
-void vtk_fill_text(struct msh_reader *r, struct vtk_array *array, const struct nifti_type *type,
-                   const char **at, const char *end)
+void vtk_fill_text(struct msh_reader *r, struct vtk_array *array, const char **at, const char *end)
 {
-    bool whole = type->most > type->least;
+    bool whole = array->type->most > array->type->least;
     for (int64_t i = 0; r->status == STATUS_OK && i < array->count; i++) {
         int64_t length;
         const char *word = input_word(at, end, ',', &length);
