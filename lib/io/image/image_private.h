@@ -20,13 +20,12 @@ struct nifti {
 /* How the values of a type are stored. */
 struct nifti_type {
     int code;
-    const char *name;
-    int bytes;            /* of one component */
-    int components;       /* of the type itself */
-    double least, most;   /* of an integer type; 0, 0: floating point */
-    const char *names[4]; /* A|B, in headers of NRRD and of MetaImage, where the first one is written, in VTU
-                             and in legacy files of VTK. Those of a colour are those of its components, whose
-                             type comes first. */
+    const char *name;                   /* in VTU, too, in any case */
+    int bytes;                          /* of one component */
+    int components;                     /* of the type itself */
+    double least, most;                 /* of an integer type; 0, 0: floating point */
+    const char *nrrd, *metaimage, *vtk; /* A|B, in headers, where the first one is written, and in legacy
+                                           files of VTK; of a colour those of its components */
 };
 enum number_format { NUMBERS_OF_NRRD, NUMBERS_OF_METAIMAGE, NUMBERS_OF_VTU, NUMBERS_OF_VTK };
 

@@ -10,13 +10,6 @@
 
 /* ---- headers of text ---- */
 
-/* The first name of the image's type in a format: 0 NRRD, 1 MetaImage. */
-static void print_type(FILE *file, const struct image *image, int format)
-{
-    const char *names = nifti_type(image->datatype)->names[format];
-    fwrite(names, 1, strcspn(names, "|"), file);
-}
-
 static void print_vector(FILE *file, const struct image *image, int column)
 {
     fprintf(file, " (%.15g,%.15g,%.15g)", 0.0 - 1e3 * image->to_world[0][column],
@@ -37,9 +30,10 @@ static void nrrd_print(const struct image *image, const char *data_file, FILE *f
     if (image->description[0] != '\0') {
         fprintf(file, "content: %s\n", image->description);
     }
-    fputs("type: ", file);
-    print_type(file, image, 0);
-    fprintf(file, "\ndimension: %d\nspace: left-posterior-superior\nsizes:", several ? 4 : 3);
+    const char *names = nifti_type(image->datatype)->nrrd;
+    fprintf(file,
+            "type: %.*s\ndimension: %d\nspace: left-posterior-superior\nsizes:", (int)strcspn(names, "|"),
+            names, several ? 4 : 3);
     if (several) {
         fprintf(file, " %zu", image->components);
     }
@@ -76,9 +70,9 @@ static void metaimage_print(const struct image *image, const char *data_file, FI
     if (image->components > 1) {
         fprintf(file, "ElementNumberOfChannels = %zu\n", image->components);
     }
-    fputs("ElementType = ", file);
-    print_type(file, image, 1);
-    fprintf(file, "\nElementDataFile = %s\n", data_file != NULL ? data_file : "LOCAL");
+    const char *names = nifti_type(image->datatype)->metaimage;
+    fprintf(file, "ElementType = %.*s\nElementDataFile = %s\n", (int)strcspn(names, "|"), names,
+            data_file != NULL ? data_file : "LOCAL");
 }
 
 /* ---- all formats ---- */
