@@ -5,13 +5,32 @@
 
 #include "base/status.h"
 #include "io/scene/scene.h"
-#include "io/scene/scene_ini.h"
 
 #include <stdbool.h>
 
+struct ini_entry {
+    const char *key;
+    char *value; /* not empty, without blanks at its ends; readers may modify it */
+    int64_t line;
+};
+
+/* `[kind NAME]` or `[kind]`, without interpretation. */
+struct ini_section {
+    const char *kind;
+    const char *name; /* "" if the header has none */
+    int64_t line;
+    struct ini_entry *entries; /* keys differ */
+    int64_t entry_count;
+};
+
+/* The entry of that key, or NULL. */
+const struct ini_entry *ini_find(const struct ini_section *section, const char *key);
+
+/* Cut the blanks off the end of a text. */
+void ini_trim(char *text);
+
 /* The section under interpretation. */
 struct place {
-    const struct ini_file *file;
     const struct ini_section *section;
     struct scene *scene; /* owns texts and lists */
     struct error *error;

@@ -16,7 +16,7 @@ static enum status fail_at(const struct place *place, const char *key, enum stat
 {
     const struct ini_section *section = place->section;
     const struct ini_entry *entry = key != NULL ? ini_find(section, key) : NULL;
-    return fail_in(place->error, status, "%s:%jd: [%s%s%s]", place->file->path,
+    return fail_in(place->error, status, "%s:%jd: [%s%s%s]", place->scene->path,
                    (entry != NULL ? entry->line : section->line), section->kind,
                    section->name[0] != '\0' ? " " : "", section->name);
 }
@@ -256,7 +256,7 @@ static enum status read_names(const struct place *place, const char *key, char *
 {
     char *item;
     list->names = array_new((int64_t)strlen(rest) + 1, sizeof *list->names); /* more than enough */
-    RETURN_IF_ERROR(owned_add(&place->scene->owned, list->names, place->file->path, place->error));
+    RETURN_IF_ERROR(owned_add(&place->scene->owned, list->names, place->scene->path, place->error));
     while ((item = next_item(&rest)) != NULL) {
         if (item[0] == '\0') {
             return place_fail(place, key, "has an empty name: write names with single commas between");
@@ -277,14 +277,14 @@ enum status place_print(const struct place *place, char **text, const char *form
     va_start(arguments, format);
     *text = vasprintf(text, format, arguments) < 0 ? NULL : *text;
     va_end(arguments);
-    return owned_add(&place->scene->owned, *text, place->file->path, place->error);
+    return owned_add(&place->scene->owned, *text, place->scene->path, place->error);
 }
 
 /* Read the name of a file, and add it to the files of the scene. */
 static enum status read_file(const struct place *place, const char *text, const char **path)
 {
     struct name_list *files = &place->scene->files;
-    const char *scene = place->file->path, *slash = strrchr(scene, '/');
+    const char *scene = place->scene->path, *slash = strrchr(scene, '/');
     int folder = text[0] != '/' && slash != NULL ? (int)(slash - scene) + 1 : 0;
     RETURN_IF_ERROR(RESIZE_ARRAY(&files->names, files->count + 1, place->error));
     char **name = &files->names[files->count];
