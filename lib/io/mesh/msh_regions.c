@@ -8,22 +8,22 @@
 #include <stdlib.h>
 #include <string.h>
 
-int mesh_element_dim(const struct mesh_draft *draft, int64_t element)
+int mesh_element_dim(const struct mesh *mesh, int64_t element)
 {
-    return msh_type(draft->msh->elements[element].type).dim;
+    return msh_type(mesh->msh->elements[element].type).dim;
 }
 
-int mesh_corners(const struct mesh_draft *draft, int64_t element)
+int mesh_corners(const struct mesh *mesh, int64_t element)
 {
-    return msh_type(msh_type(draft->msh->elements[element].type).linear).node_count;
+    return msh_type(msh_type(mesh->msh->elements[element].type).linear).node_count;
 }
 
-static enum status check_plane(const struct mesh_draft *draft)
+static enum status check_plane(const struct mesh *mesh)
 {
-    const struct msh *msh = draft->msh;
+    const struct msh *msh = mesh->msh;
     struct box box = box_of(3, 0, NULL);
     for (int64_t e = 0; e < msh->element_count; e++) {
-        int count = mesh_element_dim(draft, e) == 2 ? mesh_corners(draft, e) : 0;
+        int count = mesh_element_dim(mesh, e) == 2 ? mesh_corners(mesh, e) : 0;
         for (int k = 0; k < count; k++) {
             box_add(&box, 1, msh->nodes[msh->node_idx[msh->elements[e].first + k]].x);
         }
@@ -32,24 +32,24 @@ static enum status check_plane(const struct mesh_draft *draft)
     box.dim = 2;
     if (!(across <= COARSE_ROUND_OFF * box_side(&box))) {
         return fail(
-            draft->error, STATUS_INPUT,
+            mesh->error, STATUS_INPUT,
             "a surface in space, without volume cells: mesh the volume (gmsh -3), or a plane z = const");
     }
     return STATUS_OK;
 }
 
-enum status mesh_find_dim(struct mesh_draft *draft)
+enum status mesh_find_dim(struct mesh *mesh)
 {
     int dim = -1;
-    for (int64_t e = 0; e < draft->msh->element_count; e++) {
-        dim = mesh_element_dim(draft, e) > dim ? mesh_element_dim(draft, e) : dim;
+    for (int64_t e = 0; e < mesh->msh->element_count; e++) {
+        dim = mesh_element_dim(mesh, e) > dim ? mesh_element_dim(mesh, e) : dim;
     }
     if (dim < 2) {
-        return fail(draft->error, STATUS_INPUT,
+        return fail(mesh->error, STATUS_INPUT,
                     "no cells (triangles, tetrahedra, ...): mesh it with gmsh -2 or -3");
     }
-    draft->mesh->dim = dim;
-    return dim == 2 ? check_plane(draft) : STATUS_OK;
+    mesh->dim = dim;
+    return dim == 2 ? check_plane(mesh) : STATUS_OK;
 }
 
 /* The group of a cell; group_count if there is none. */
@@ -76,25 +76,25 @@ static int compare_cells(const void *left, const void *right)
     return nodes != 0 ? nodes : (a->element > b->element) - (a->element < b->element);
 }
 
-static void key_cell(const struct mesh_draft *draft, int64_t element, struct keyed_cell *key)
+static void key_cell(const struct mesh *mesh, int64_t element, struct keyed_cell *key)
 {
-    const struct msh *msh = draft->msh;
+    const struct msh *msh = mesh->msh;
     const int32_t *node = &msh->node_idx[msh->elements[element].first];
     key->element = element;
     memset(key->node, 0xff, sizeof key->node);
-    sort_nodes(mesh_corners(draft, element), node, key->node);
+    sort_nodes(mesh_corners(mesh, element), node, key->node);
 }
 
 /* is_cell[element]: it has the mesh's dimension and is the first element with its nodes. */
-static enum status find_cells(struct mesh_draft *draft, bool is_cell[])
+static enum status find_cells(struct mesh *mesh, bool is_cell[])
 {
-    const struct msh *msh = draft->msh;
+    const struct msh *msh = mesh->msh;
     int64_t count = 0, again = 0;
-    NEW_SCRATCH(struct keyed_cell, keys, msh->element_count, draft->error);
+    NEW_SCRATCH(struct keyed_cell, keys, msh->element_count, mesh->error);
     for (int64_t e = 0; e < msh->element_count; e++) {
-        is_cell[e] = mesh_element_dim(draft, e) == draft->mesh->dim;
+        is_cell[e] = mesh_element_dim(mesh, e) == mesh->dim;
         if (is_cell[e]) {
-            key_cell(draft, e, &keys[count++]);
+            key_cell(mesh, e, &keys[count++]);
         }
     }
     qsort(keys, (size_t)count, sizeof *keys, compare_cells);
@@ -106,15 +106,15 @@ static enum status find_cells(struct mesh_draft *draft, bool is_cell[])
     }
     return again == 0
                ? STATUS_OK
-               : mesh_add_note(draft, "cells in two physical groups, or there twice, taken once: %jd", again);
+               : mesh_add_note(mesh, "cells in two physical groups, or there twice, taken once: %jd", again);
 }
 
-static enum status check_wanted(const struct mesh_draft *draft, const struct names *wanted,
+static enum status check_wanted(const struct mesh *mesh, const struct names *wanted,
                                 const struct names *present)
 {
     for (int64_t i = 0; i < wanted->count; i++) {
         if (names_find(present, wanted->name[i]) < 0) {
-            return fail(draft->error, STATUS_INPUT, "no cells in a region '%.100s': there are %s",
+            return fail(mesh->error, STATUS_INPUT, "no cells in a region '%.100s': there are %s",
                         wanted->name[i], present->list);
         }
     }
@@ -123,14 +123,14 @@ static enum status check_wanted(const struct mesh_draft *draft, const struct nam
 
 /* Name the wanted regions. region_of_group[group_count + 1], the last for cells without group, receives the
  * index of each, or -1. cells_of[]: number of cells of each. */
-static enum status name_regions(struct mesh_draft *draft, const int64_t cells_of[], int32_t region_of_group[])
+static enum status name_regions(struct mesh *mesh, const int64_t cells_of[], int32_t region_of_group[])
 {
-    const struct msh *msh = draft->msh;
-    struct names *regions = &draft->mesh->regions;
+    const struct msh *msh = mesh->msh;
+    struct names *regions = &mesh->regions;
     FREED_BY(names_free) struct names present = {0}, wanted = {0};
     const char *unnamed = "body"; /* "unnamed" if there are other regions */
     RETURN_IF_ERROR(
-        names_split(&wanted, draft->options->regions != NULL ? draft->options->regions : "", draft->error));
+        names_split(&wanted, mesh->options->regions != NULL ? mesh->options->regions : "", mesh->error));
     for (int32_t g = 0; g <= msh->group_count; g++) {
         region_of_group[g] = -1;
         if (cells_of[g] == 0) {
@@ -139,38 +139,38 @@ static enum status name_regions(struct mesh_draft *draft, const int64_t cells_of
         bool named = g < msh->group_count;
         unnamed = named ? "unnamed" : unnamed;
         const char *name = named ? msh->groups[g].name : unnamed;
-        RETURN_IF_ERROR(names_add(&present, name, draft->error));
-        if (draft->options->regions != NULL && names_find(&wanted, name) < 0) {
+        RETURN_IF_ERROR(names_add(&present, name, mesh->error));
+        if (mesh->options->regions != NULL && names_find(&wanted, name) < 0) {
             continue;
         }
         int64_t same = named ? -1 : names_find(regions, name);
         region_of_group[g] = (int32_t)(same >= 0 ? same : regions->count);
         if (same < 0) {
-            RETURN_IF_ERROR(names_add(regions, name, draft->error));
+            RETURN_IF_ERROR(names_add(regions, name, mesh->error));
         }
     }
-    RETURN_IF_ERROR(check_wanted(draft, &wanted, &present));
+    RETURN_IF_ERROR(check_wanted(mesh, &wanted, &present));
     if (cells_of[msh->group_count] > 0 && regions->count > 1) {
-        RETURN_IF_ERROR(mesh_add_note(draft, "cells in no physical group, region '%s': %jd", unnamed,
+        RETURN_IF_ERROR(mesh_add_note(mesh, "cells in no physical group, region '%s': %jd", unnamed,
                                       cells_of[msh->group_count]));
     }
     return STATUS_OK;
 }
 
-enum status mesh_pick_regions(struct mesh_draft *draft)
+enum status mesh_pick_regions(struct mesh *mesh)
 {
-    const struct msh *msh = draft->msh;
-    NEW_SCRATCH(int32_t, region_of_group, msh->group_count + 1, draft->error); /* the last is for cells without a group */
-    NEW_SCRATCH(int64_t, cells_of, msh->group_count + 1, draft->error);
-    NEW_SCRATCH(bool, is_cell, msh->element_count, draft->error);
-    RETURN_IF_ERROR(NEW_ARRAY(&draft->region_of, msh->element_count, draft->error));
-    RETURN_IF_ERROR(find_cells(draft, is_cell));
+    const struct msh *msh = mesh->msh;
+    NEW_SCRATCH(int32_t, region_of_group, msh->group_count + 1, mesh->error); /* the last is for cells without a group */
+    NEW_SCRATCH(int64_t, cells_of, msh->group_count + 1, mesh->error);
+    NEW_SCRATCH(bool, is_cell, msh->element_count, mesh->error);
+    RETURN_IF_ERROR(NEW_ARRAY(&mesh->region_of, msh->element_count, mesh->error));
+    RETURN_IF_ERROR(find_cells(mesh, is_cell));
     for (int64_t e = 0; e < msh->element_count; e++) {
         cells_of[cell_group(msh, e)] += is_cell[e];
     }
-    RETURN_IF_ERROR(name_regions(draft, cells_of, region_of_group));
+    RETURN_IF_ERROR(name_regions(mesh, cells_of, region_of_group));
     for (int64_t e = 0; e < msh->element_count; e++) {
-        draft->region_of[e] = is_cell[e] ? region_of_group[cell_group(msh, e)] : -1;
+        mesh->region_of[e] = is_cell[e] ? region_of_group[cell_group(msh, e)] : -1;
     }
     return STATUS_OK;
 }
