@@ -50,7 +50,7 @@ MUST_CHECK enum status stream_read(struct stream *stream, int descriptor, const 
                                    struct error *error);
 
 /* Read the sections before the place where a stream was stopped, truncated or damaged; *why receives the
- * fault there, or "". STATUS_INPUT if no section is complete. */
+ * fault, if there is one. STATUS_INPUT if no section is complete. */
 MUST_CHECK enum status stream_recover(struct stream *stream, int descriptor, const char *name,
                                       struct error *why, struct error *error);
 
