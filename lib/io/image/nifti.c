@@ -102,22 +102,6 @@ static bool is_sound(double m[3][4])
     return isfinite(volume) && volume > 0 && fabs(determinant3(m[0], m[1], m[2])) > 1e-6 * volume;
 }
 
-/* Largest distance between the positions of the image's corners under two maps. */
-static double disagreement(const struct image *image, double a[3][4], double b[3][4])
-{
-    double most = 0;
-    for (int corner = 0; corner < 8; corner++) {
-        double voxel[3], at_a[3], at_b[3];
-        for (int i = 0; i < 3; i++) {
-            voxel[i] = corner >> i & 1 ? (double)(image->size[i] - 1) : 0;
-        }
-        image_map(&a[0][0], voxel, at_a);
-        image_map(&b[0][0], voxel, at_b);
-        most = fmax(most, hypot(hypot(at_a[0] - at_b[0], at_a[1] - at_b[1]), at_a[2] - at_b[2]));
-    }
-    return most;
-}
-
 enum status image_place(struct image *image, double matrix[3][4], const char *form, struct error *error)
 {
     if (image->size[2] == 1) {
@@ -134,7 +118,7 @@ enum status image_place(struct image *image, double matrix[3][4], const char *fo
 enum status nifti_space(const struct nifti *header, struct image *image, struct error *error)
 {
     static const double unit[] = {1e-3, 1, 1e-3, 1e-6};
-    double matrix[3][4] = {{0}}, other[3][4];
+    double matrix[3][4] = {{0}};
     const char *form = "its voxel sizes (pixdim)";
     int units = (int)header->units & 7;
     if (units > 3) {
@@ -158,17 +142,6 @@ enum status nifti_space(const struct nifti *header, struct image *image, struct 
             matrix[i][i] = fabs(header->pixdim[1 + i]);
         }
         image_note(image, "has neither sform nor qform: first voxel at the origin, axes taken to be RAS");
-    }
-    if (header->sform > 0 && header->qform > 0) {
-        from_qform(header, other);
-        if (image->size[2] == 1) {
-            complete_slice(other);
-            complete_slice(matrix);
-        }
-        double half = 0.5 * fmin(column_length(matrix, 0), column_length(matrix, 1));
-        if (!(disagreement(image, matrix, other) <= half)) {
-            image_note(image, "sform and qform differ by more than half a voxel: sform taken");
-        }
     }
     for (int i = 0; i < 12; i++) {
         matrix[i / 4][i % 4] *= image->unit;

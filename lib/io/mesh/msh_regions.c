@@ -109,18 +109,6 @@ static enum status find_cells(struct mesh *mesh, bool is_cell[])
                : mesh_add_note(mesh, "cells in two physical groups, or there twice, taken once: %jd", again);
 }
 
-static enum status check_wanted(const struct mesh *mesh, const struct names *wanted,
-                                const struct names *present)
-{
-    for (int64_t i = 0; i < wanted->count; i++) {
-        if (names_find(present, wanted->name[i]) < 0) {
-            return fail(mesh->error, STATUS_INPUT, "no cells in a region '%.100s': there are %s",
-                        wanted->name[i], present->list);
-        }
-    }
-    return STATUS_OK;
-}
-
 /* Name the wanted regions. region_of_group[group_count + 1], the last for cells without group, receives the
  * index of each, or -1. cells_of[]: number of cells of each. */
 static enum status name_regions(struct mesh *mesh, const int64_t cells_of[], int32_t region_of_group[])
@@ -149,7 +137,9 @@ static enum status name_regions(struct mesh *mesh, const int64_t cells_of[], int
             RETURN_IF_ERROR(names_add(regions, name, mesh->error));
         }
     }
-    RETURN_IF_ERROR(check_wanted(mesh, &wanted, &present));
+    for (int64_t i = 0, ignored; i < wanted.count; i++) {
+        RETURN_IF_ERROR(names_need(&present, "region with cells", wanted.name[i], &ignored, mesh->error));
+    }
     if (cells_of[msh->group_count] > 0 && regions->count > 1) {
         RETURN_IF_ERROR(mesh_add_note(mesh, "cells in no physical group, region '%s': %jd", unnamed,
                                       cells_of[msh->group_count]));
