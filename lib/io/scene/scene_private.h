@@ -94,16 +94,6 @@ MUST_CHECK enum status place_forbid(const struct place *place, const char *key, 
 /* The same of all keys of a NULL-terminated list. */
 MUST_CHECK enum status place_forbid_all(const struct place *place, const char *const keys[], const char *why);
 
-/* STATUS_INPUT unless exactly one of the keys (a NULL-terminated list) is present. */
-MUST_CHECK enum status place_require_one(const struct place *place, const char *const keys[]);
-
-/* The error that a key, or with key NULL the section itself, is not in a NULL-terminated list. */
-enum status place_unknown(const struct place *place, const char *key, const char *what,
-                          const char *const allowed[]);
-
-/* STATUS_INPUT unless all keys of the section are among `keys` (a NULL-terminated list). */
-MUST_CHECK enum status place_only_keys(const struct place *place, const char *const keys[]);
-
 /* Print a text, which the scene owns. */
 MUST_CHECK enum status place_print(const struct place *place, char **text, const char *format, ...)
     __attribute__((format(printf, 3, 4)));

@@ -55,51 +55,6 @@ enum status place_forbid_all(const struct place *place, const char *const keys[]
     return STATUS_OK;
 }
 
-/* text[size] = "a, b, c" from a NULL-terminated list. */
-static void join(const char *const words[], char *text, size_t size)
-{
-    text[0] = '\0';
-    for (int i = 0; words[i] != NULL; i++) {
-        text_append(text, size, "%s%s", i > 0 ? ", " : "", words[i]);
-    }
-}
-
-enum status place_require_one(const struct place *place, const char *const keys[])
-{
-    int count = 0;
-    for (int i = 0; keys[i] != NULL; i++) {
-        count += place_has(place, keys[i]);
-    }
-    char list[256];
-    join(keys, list, sizeof list);
-    return count == 1
-               ? STATUS_OK
-               : place_fail(place, NULL, "%s of %s: give exactly one", count == 0 ? "none" : "several", list);
-}
-
-enum status place_unknown(const struct place *place, const char *key, const char *what,
-                          const char *const allowed[])
-{
-    char list[320];
-    join(allowed, list, sizeof list);
-    return place_fail(place, key, "unknown %s: allowed are %s", what, list);
-}
-
-enum status place_only_keys(const struct place *place, const char *const keys[])
-{
-    for (int64_t e = 0; e < place->section->entry_count; e++) {
-        int i = 0;
-        const char *key = place->section->entries[e].key;
-        while (keys[i] != NULL && strcmp(keys[i], key) != 0) {
-            i++;
-        }
-        if (keys[i] == NULL) {
-            return place_unknown(place, key, "key", keys);
-        }
-    }
-    return STATUS_OK;
-}
-
 /* Read a number; the message explains decimal commas. */
 static enum status number(const struct place *place, const char *key, const char *text, double *value)
 {
