@@ -236,8 +236,7 @@ END
 @test "a mesh with a slit, whose faces have a name, is read as such" {
     gmsh -v 1 -2 -setnumber meshed 1 -setnumber h 4 "$top/pipelines/incision/slit.geo" -o "$PWD/whole.msh"
     gmsh -v 1 -setstring mesh "$PWD/whole.msh" -setstring cracked "$PWD/slit.msh" "$top/pipelines/incision/crack.geo" -parse_and_exit
-    nodes -u mm -t slit.msh > slit.mts 2> said
-    grep -qx "nodes: nodes at the same place, on named facets of one body: 4 pairs: it has a slit there" said
+    nodes -u mm -t slit.msh > slit.mts
     mts check slit.mts
     [ "$(mts print facets.set slit.mts | grep -c '^0$')" = 10 ]
 }

@@ -242,14 +242,14 @@ static void mark_slits(const struct mesh *mesh, bool *slit)
 }
 
 /* Two nodes of the mesh within ROUND_OFF of its extent are an error if cells connect them, unless one is on a
- * facet that has a group: of a slit; else two bodies touch. Both are noted. They coincide in any projection:
+ * facet that has a group: of a slit. Of two bodies they are noted. They coincide in any projection:
  * sort them along a direction with which no lattice is aligned, and compare those that are near along it. */
 static enum status check_coincident(struct mesh *mesh)
 {
     static const double direction[3] = {0.7548776662466927, 0.5698402909980532, 0.3247179572447460};
     struct box box = box_of(mesh->dim, mesh->node_count, mesh->x);
     double tolerance = ROUND_OFF * box_side(&box);
-    int64_t touching = 0, doubled = 0;
+    int64_t touching = 0;
     NEW_SCRATCH(int32_t, body, mesh->node_count, mesh->error);
     set_join_cells(mesh->node_count, mesh->cell_count, mesh->dim + 1, mesh->cells, body);
     NEW_SCRATCH(bool, slit, mesh->node_count, mesh->error);
@@ -272,19 +272,10 @@ static enum status check_coincident(struct mesh *mesh)
             }
             if (farthest <= tolerance && set_first(body, a) != set_first(body, b)) {
                 touching++;
-            } else if (farthest <= tolerance && (slit[a] || slit[b])) {
-                doubled++;
-            } else if (farthest <= tolerance) {
+            } else if (farthest <= tolerance && !slit[a] && !slit[b]) {
                 RETURN_IF_ERROR(fail_coincident(mesh, a, b));
             }
         }
-    }
-    if (doubled > 0) {
-        RETURN_IF_ERROR(
-            mesh_add_note(mesh,
-                          "nodes at the same place, on named facets of one body: %jd pairs: it has "
-                          "a slit there",
-                          doubled));
     }
     if (touching > 0) {
         RETURN_IF_ERROR(mesh_add_note(
