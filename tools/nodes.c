@@ -112,7 +112,7 @@ static void check_joined(const struct tool *tool, const struct cells *cells, con
     }
 }
 
-static struct mesh_options parse(const struct tool *tool)
+static void check_options(const struct tool *tool)
 {
     static const char *const of_stream[] = {"unit", "regions", "verbose", "text", "output", NULL};
     if (tool_given(tool, "list") && tool_first_given(tool, of_stream) != NULL) {
@@ -122,8 +122,6 @@ static struct mesh_options parse(const struct tool *tool)
         tool_fail(tool, STATUS_INPUT,
                   "the unit of the mesh is missing: give -u m, cm, mm or um, or a number");
     }
-    return (struct mesh_options){.unit = tool_length_unit(tool, "unit", 1.0),
-                                 .regions = tool_value(tool, "regions")};
 }
 
 int main(int argc, char *argv[])
@@ -134,14 +132,15 @@ int main(int argc, char *argv[])
     struct cells cells;
     FREED_BY(stream_free) struct stream stream = {0};
     tool_begin(&tool, usage, 0, 1, argc, argv);
-    struct mesh_options wanted = parse(&tool);
+    check_options(&tool);
+    double unit = tool_length_unit(&tool, "unit", 1.0);
     FREED_BY(descriptor_close) int descriptor = tool_open(&tool, tool.operands[0], &name);
     TOOL_TRY(&tool, msh_read(&msh, descriptor, name, tool_value(&tool, "regions-of"), &error));
     if (tool_given(&tool, "list")) {
         list_groups(&msh);
         return tool_end(&tool);
     }
-    TOOL_TRY(&tool, mesh_build(&msh, &wanted, &stream, &error));
+    TOOL_TRY(&tool, mesh_build(&msh, unit, tool_value(&tool, "regions"), &stream, &error));
     TOOL_TRY(&tool, stream_cells(&stream, true, &cells, &error));
     const struct section *facets = stream_find(&stream, "facets");
     check_joined(&tool, &cells, msh.by_entity[cells.dim - 1] ? NULL : facets);

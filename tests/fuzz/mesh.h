@@ -47,6 +47,6 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         return 0;
     }
     require_sound(&msh, size);
-    (void)is_accepted(mesh_build(&msh, &(struct mesh_options){.unit = 1}, &stream, &error), &error);
+    (void)is_accepted(mesh_build(&msh, 1, NULL, &stream, &error), &error);
     return 0;
 }

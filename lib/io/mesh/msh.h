@@ -78,14 +78,9 @@ MUST_CHECK enum status msh_read(struct msh *msh, int descriptor, const char *nam
                                 struct error *error);
 void msh_free(struct msh *msh);
 
-/* The parts of a file of which a mesh is made. */
-struct mesh_options {
-    double unit;         /* of the file's lengths, m */
-    const char *regions; /* comma-separated list of regions to keep, or NULL: all */
-};
-
 /* Put the mesh of `msh` into an empty stream: nodes.x, cells and cells.region, facets and facets.set if there
- * are facets, sets.ptr and sets.idx if there are sets; add remarks to msh->notes. The dimension is 3 if there
+ * are facets, sets.ptr and sets.idx if there are sets; add remarks to msh->notes. `unit`: of the file's
+ * lengths, m; `regions`: comma-separated list of regions to keep, or NULL: all. The dimension is 3 if there
  * are tetrahedra, hexahedra, prisms or pyramids, else 2 if there are triangles or quadrangles in a plane z =
  * const. Quadrangles and the cells of more than four nodes are split into simplices so that neighbours
  * conform (every quadrangular face along the diagonal through its lowest node: Dompierre et al., How to
@@ -95,5 +90,5 @@ struct mesh_options {
  * are the region 'body' if there is no other region, else 'unnamed'. STATUS_INPUT for no cells, a surface in
  * space, cells without volume or overlapping cells, coincident nodes of one body but on facets with a group,
  * an unknown region, and two node sets with one name. */
-MUST_CHECK enum status mesh_build(struct msh *msh, const struct mesh_options *options, struct stream *stream,
+MUST_CHECK enum status mesh_build(struct msh *msh, double unit, const char *regions, struct stream *stream,
                                   struct error *error);

@@ -120,7 +120,7 @@ static enum status build_nodes(struct mesh *mesh)
     RETURN_IF_ERROR(NEW_ARRAY(&mesh->x, mesh->node_count * mesh->dim, mesh->error));
     for (int64_t n = 0; n < msh->node_count; n++) {
         for (int i = 0; i < mesh->dim && mesh->node_of[n] >= 0; i++) {
-            mesh->x[mesh->node_of[n] * mesh->dim + i] = mesh->options->unit * msh->nodes[n].x[i];
+            mesh->x[mesh->node_of[n] * mesh->dim + i] = mesh->unit * msh->nodes[n].x[i];
         }
     }
     return STATUS_OK;
@@ -329,10 +329,10 @@ static void mesh_free(struct mesh *mesh)
     names_free(&mesh->node_sets);
 }
 
-enum status mesh_build(struct msh *msh, const struct mesh_options *options, struct stream *stream,
+enum status mesh_build(struct msh *msh, double unit, const char *regions, struct stream *stream,
                        struct error *error)
 {
-    FREED_BY(mesh_free) struct mesh mesh = {.msh = msh, .options = options, .error = error};
+    FREED_BY(mesh_free) struct mesh mesh = {.msh = msh, .unit = unit, .wanted = regions, .error = error};
     RETURN_IF_ERROR(mesh_find_dim(&mesh));
     RETURN_IF_ERROR(mesh_pick_regions(&mesh));
     RETURN_IF_ERROR(build_nodes(&mesh));

@@ -9,8 +9,9 @@
 
 /* A mesh of simplices in metres that is being made: its arrays are those of the stream (lib/README.md). */
 struct mesh {
-    struct msh *msh; /* receives notes */
-    const struct mesh_options *options;
+    struct msh *msh;    /* receives notes */
+    double unit;        /* of the file's lengths, m */
+    const char *wanted; /* list of regions, or NULL: all */
     struct error *error;
     int dim; /* 2 or 3 */
     int64_t node_count;

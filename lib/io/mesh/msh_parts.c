@@ -118,8 +118,7 @@ static enum status name_regions(struct mesh *mesh, const int64_t cells_of[], int
     struct names *regions = &mesh->regions;
     FREED_BY(names_free) struct names present = {0}, wanted = {0};
     const char *unnamed = "body"; /* "unnamed" if there are other regions */
-    RETURN_IF_ERROR(
-        names_split(&wanted, mesh->options->regions != NULL ? mesh->options->regions : "", mesh->error));
+    RETURN_IF_ERROR(names_split(&wanted, mesh->wanted != NULL ? mesh->wanted : "", mesh->error));
     for (int32_t g = 0; g <= msh->group_count; g++) {
         region_of_group[g] = -1;
         if (cells_of[g] == 0) {
@@ -129,7 +128,7 @@ static enum status name_regions(struct mesh *mesh, const int64_t cells_of[], int
         unnamed = named ? "unnamed" : unnamed;
         const char *name = named ? msh->groups[g].name : unnamed;
         RETURN_IF_ERROR(names_add(&present, name, mesh->error));
-        if (mesh->options->regions != NULL && names_find(&wanted, name) < 0) {
+        if (mesh->wanted != NULL && names_find(&wanted, name) < 0) {
             continue;
         }
         int64_t same = named ? -1 : names_find(regions, name);

@@ -1,7 +1,7 @@
 /* Reading mesh files; private to lib/io.
  *
  *   $PhysicalNames, $Entities \
- *   $Nodes                     } msh_list.c --> msh_groups.c --> struct msh
+ *   $Nodes                     } msh_list.c --> struct msh
  *   $Elements                 /
  *   inp_read.c, feb_read.c, vtu_read.c, vtk_read.c as well
  *
