@@ -1,5 +1,6 @@
 /* The stream "mts 1" (see mts(5)): named, typed tables that travel through a pipe, as text or binary.
- * Rows count from 0, in messages too. */
+ * Rows count from 0, in messages too. As all readers and writers of lib/io, these need the locale "C" for
+ * numbers, which a program has as long as it sets no other. */
 #pragma once
 
 #include "base/names.h"
@@ -86,7 +87,7 @@ MUST_CHECK enum status stream_writer_end(struct stream_writer *writer, const cha
 
 /* Write the rows of one section as bare text: a line per row, single blanks between the numbers. Errors of
  * the file stay in it. */
-MUST_CHECK enum status stream_write_rows(const struct section *section, FILE *file, struct error *error);
+void stream_write_rows(const struct section *section, FILE *file);
 
 /* The section of that name, or NULL. */
 const struct section *stream_find(const struct stream *stream, const char *name);

@@ -57,7 +57,7 @@ MUST_CHECK enum status payload_read_text(struct input *input, struct section *se
 enum status fail_short(const struct section *section, int64_t row, struct error *error);
 
 /* stream_text.c: parse one number that ends at a blank, a line end or `end`. Returns the byte behind it, or
- * NULL if it is not a number of that type, or out of range. These functions need the C locale. */
+ * NULL if it is not a number of that type, or out of range. */
 const char *number_parse_integer(const char *at, const char *end, int64_t least, int64_t most,
                                  int64_t *value);
 const char *number_parse_double(const char *at, const char *end, double *value);

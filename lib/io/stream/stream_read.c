@@ -6,7 +6,6 @@
 #include "base/memory.h"
 
 #include <fcntl.h>
-#include <locale.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
@@ -368,12 +367,6 @@ enum status stream_recover(struct stream *stream, int descriptor, const char *na
 {
     struct reader reader = {.stream = stream, .crc = 0};
     stream_init(stream);
-    /* Numbers are read in the C locale, whatever the program that calls us has set. */
-    locale_t c_locale = newlocale(LC_ALL_MASK, "C", (locale_t)0);
-    if (c_locale == (locale_t)0) {
-        return fail_memory(error, name);
-    }
-    locale_t previous = uselocale(c_locale);
     enum status status = input_open(&reader.input, stream, descriptor, error);
     if (status == STATUS_OK) {
         status = read_lines(&reader, error);
@@ -382,8 +375,6 @@ enum status stream_recover(struct stream *stream, int descriptor, const char *na
         *why = *error;
         status = STATUS_OK;
     }
-    uselocale(previous);
-    freelocale(c_locale);
     if (!reader.binary && !stream->is_file) { /* all is copied */
         stream_free_input(stream);
     }
