@@ -88,9 +88,9 @@ MUST_CHECK enum status image_segments_merge(struct image *image, struct error *e
 /* The version and byte order of a header, from its first 4 bytes; 0: not a header. */
 int nifti_version(const unsigned char *bytes, bool *swapped);
 
-/* Decode a whole header of that version. */
-void nifti_decode(const unsigned char *bytes, int version, bool swapped, struct nifti *header,
-                  struct image *image);
+/* Decode a whole header of that version. STATUS_INPUT without NIfTI's mark. */
+MUST_CHECK enum status nifti_decode(const unsigned char *bytes, int version, bool swapped,
+                                    struct nifti *header, struct image *image, struct error *error);
 
 /* Encode an image's header, little-endian, with the 4 bytes that follow it; returns the offset of the data.
  */

@@ -15,7 +15,6 @@
 #include <sys/stat.h>
 
 static const double exact_integers = 9007199254740992.0; /* 2^53: all up to there are doubles */
-static const char pair_magic[] = "ni1";
 
 static enum status fail_foreign(const unsigned char *bytes, size_t size, struct error *error)
 {
@@ -37,23 +36,10 @@ static enum status fail_foreign(const unsigned char *bytes, size_t size, struct 
                             "header's file");
 }
 
-/* *pair: the data are in a file of their own. */
-static enum status check_magic(const unsigned char *bytes, int version, bool *pair, struct error *error)
-{
-    const char *magic = (const char *)bytes + (version == 1 ? 344 : 4);
-    *pair = memcmp(magic, version == 1 ? pair_magic : "ni2", 4) == 0;
-    if (*pair || memcmp(magic, version == 1 ? "n+1" : "n+2", 4) == 0) {
-        return STATUS_OK;
-    }
-    return version == 1 ? fail(error, STATUS_INPUT,
-                               "is an ANALYZE 7.5 header, which knows no orientation: convert it to NIfTI")
-                        : fail(error, STATUS_INPUT, "header: no mark of NIfTI-2: damaged");
-}
-
 static enum status read_header(struct image_bytes *file, struct nifti *header, struct image *image,
                                struct error *error)
 {
-    bool swapped = false, pair;
+    bool swapped = false;
     int version = file->size >= 4 ? nifti_version(file->bytes, &swapped) : 0;
     if (version == 0) {
         return fail_foreign(file->bytes, file->size, error);
@@ -62,10 +48,7 @@ static enum status read_header(struct image_bytes *file, struct nifti *header, s
     if (file->size < file->at) {
         return fail(error, STATUS_INPUT, "cut short: %zu bytes of a header of %zu", file->size, file->at);
     }
-    RETURN_IF_ERROR(check_magic(file->bytes, version, &pair, error));
-    nifti_decode(file->bytes, version, swapped, header, image);
-    header->pair = pair;
-    return STATUS_OK;
+    return nifti_decode(file->bytes, version, swapped, header, image, error);
 }
 
 /* Check sizes and components: their product fits into memory sizes. */

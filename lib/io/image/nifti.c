@@ -181,7 +181,8 @@ enum { FIELDS = sizeof fields / sizeof *fields };
 
 static const int description_offset[2] = {148, 240}, intent_name_offset[2] = {328, 508},
                  magic_offset[2] = {344, 4};
-static const char magic1[] = "n+1", magic2[] = "n+2\0\r\n\032\n";
+static const char magic1[] = "n+1",
+                  magic2[] = "n+2\0\r\n\032\n"; /* 'i' for '+': data in a file of their own */
 
 int nifti_version(const unsigned char *bytes, bool *swapped)
 {
@@ -222,10 +223,18 @@ void image_describe(struct image *image, const char *text)
     copy_text(image->description, (const unsigned char *)text, length < most ? length : most);
 }
 
-void nifti_decode(const unsigned char *bytes, int version, bool swapped, struct nifti *header,
-                  struct image *image)
+enum status nifti_decode(const unsigned char *bytes, int version, bool swapped, struct nifti *header,
+                         struct image *image, struct error *error)
 {
-    *header = (struct nifti){.version = version, .swapped = swapped};
+    char magic[4];
+    memcpy(magic, bytes + magic_offset[version - 1], sizeof magic);
+    *header = (struct nifti){.version = version, .swapped = swapped, .pair = magic[1] == 'i'};
+    magic[1] = header->pair ? '+' : magic[1];
+    if (memcmp(magic, version == 1 ? magic1 : magic2, sizeof magic) != 0) {
+        return fail(error, STATUS_INPUT,
+                    version == 1 ? "is an ANALYZE 7.5 header, which knows no orientation: convert it to NIfTI"
+                                 : "header: no mark of NIfTI-2: damaged");
+    }
     for (int f = 0; f < FIELDS; f++) {
         nifti_get(nifti_type(fields[f].at[version - 1].type), bytes + fields[f].at[version - 1].offset,
                   swapped, fields[f].count, (double *)(void *)((char *)header + fields[f].member));
@@ -234,6 +243,7 @@ void nifti_decode(const unsigned char *bytes, int version, bool swapped, struct 
     image->intent = (int)header->intent;
     copy_text(image->description, bytes + description_offset[version - 1], 80);
     copy_text(image->intent_name, bytes + intent_name_offset[version - 1], 16);
+    return STATUS_OK;
 }
 
 static void sizes_of(const struct image *image, const struct nifti_type *type, double dim[8])
