@@ -119,3 +119,12 @@ void textfile_free(struct textfile *file)
     free(file->text);
     *file = (struct textfile){0};
 }
+
+char *text_word(char **at)
+{
+    char *word = *at + strspn(*at, " \t");
+    char *end = word + strcspn(word, " \t");
+    *at = *end != '\0' ? end + 1 : end;
+    *end = '\0';
+    return word;
+}

@@ -58,15 +58,6 @@ static enum status input_open(struct input *input, struct stream *stream, int de
 
 /* ---- the header line of a section: "# NAME TYPE ROWS COLS [key=value ...]" ---- */
 
-static char *next_word(char **at)
-{
-    char *word = *at + strspn(*at, " \t");
-    char *end = word + strcspn(word, " \t");
-    *at = *end != '\0' ? end + 1 : end;
-    *end = '\0';
-    return word;
-}
-
 static enum status header_type(const char *word, struct section *section, struct error *error)
 {
     for (enum element_type type = TYPE_I4; type <= TYPE_F8; type++) {
@@ -93,7 +84,7 @@ static enum status header_attributes(char *at, struct section *section, bool *bi
 {
     bool encoded = false;
     char *to = section->attributes;
-    for (char *word = next_word(&at); *word != '\0'; word = next_word(&at)) {
+    for (char *word = text_word(&at); *word != '\0'; word = text_word(&at)) {
         if (strncmp(word, "enc=", 4) != 0) {
             to = stpcpy(stpcpy(to, to > section->attributes ? " " : ""), word);
             continue;
@@ -124,13 +115,13 @@ static enum status header_parse(const char *line, size_t length, struct section 
                     "'%.40s' stands where a section header '# NAME TYPE ROWS COLS' should", copy);
     }
     char *at = copy + 2;
-    section->name = strdup(next_word(&at));
+    section->name = strdup(text_word(&at));
     if (section->name == NULL) {
         return fail_memory(error, "header");
     }
-    RETURN_IF_ERROR(header_type(next_word(&at), section, error));
-    RETURN_IF_ERROR(header_count(next_word(&at), "rows", section, &section->rows, error));
-    RETURN_IF_ERROR(header_count(next_word(&at), "columns", section, &section->cols, error));
+    RETURN_IF_ERROR(header_type(text_word(&at), section, error));
+    RETURN_IF_ERROR(header_count(text_word(&at), "rows", section, &section->rows, error));
+    RETURN_IF_ERROR(header_count(text_word(&at), "columns", section, &section->cols, error));
     RETURN_IF_ERROR(header_attributes(at, section, binary, error));
     return section_validate(section, error);
 }
