@@ -182,7 +182,6 @@ static void check_options(const struct tool *tool)
 static void print_report(const struct tool *tool, const struct warp_job *job, const struct image *grid,
                          const struct warp_report *report)
 {
-    char text[128];
     const struct motion *motion = job->motion;
     int dim = motion->cells.dim;
     int64_t first = 0, folded = motion_folded(motion, &first);
@@ -203,7 +202,8 @@ static void print_report(const struct tool *tool, const struct warp_job *job, co
     if (!tool_given(tool, "verbose")) {
         return;
     }
-    tool_note(tool, "%s", image_text(grid, text));
+    tool_note(tool, "%zu x %zu x %zu voxels of %.4g x %.4g x %.4g mm", grid->size[0], grid->size[1],
+              grid->size[2], 1e3 * image_step(grid, 0), 1e3 * image_step(grid, 1), 1e3 * image_step(grid, 2));
     tool_note(tool,
               dim == 3 ? "%jd voxels in the %sbody, %.6g ml; displacement at most %.4g mm"
                        : "%jd voxels in the %sbody, %.6g cm2; displacement at most %.4g mm",
@@ -257,18 +257,6 @@ static void new_result(const struct tool *tool, bool field, struct image *source
     memcpy(result->to_world, grid->to_world, sizeof result->to_world);
     result->space = grid->space;
     result->version = grid->version;
-}
-
-static void note_not_finite(const struct tool *tool, const struct image *image, const char *name)
-{
-    size_t count = 0;
-    for (size_t i = 0; i < image_voxels(image) * image->components; i++) {
-        count += isfinite(image->values[i]) ? 0 : 1;
-    }
-    if (count > 0) {
-        tool_note(tool, "%s: %zu values are not finite: neither is what is interpolated beside them", name,
-                  count);
-    }
 }
 
 /* Build the motion, with gradients of the field that mtled computed, if the stream has it. */
@@ -346,7 +334,6 @@ int main(int argc, char *argv[])
     note_image_outside(&tool, &image, &cells, unseen);
     if (!field) {
         other = find_owners(&tool, grid, &cells, unseen, &ignored);
-        note_not_finite(&tool, &image, tool.operands[0]);
         job.source = &image;
     }
     new_result(&tool, field, &image, grid, &result);

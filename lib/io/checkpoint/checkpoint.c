@@ -14,20 +14,6 @@
 
 /* ---- what a run depends on: the scene with the files that it names, and the stream ---- */
 
-enum { BLOCK = 1 << 16 };
-
-/* Update the checksum with the bytes of a file. */
-static enum status add_file(const char *file, uLong *crc, struct error *error)
-{
-    ssize_t count = 0;
-    NEW_SCRATCH(unsigned char, block, BLOCK, error);
-    FREED_BY(descriptor_close) int descriptor = open(file, O_RDONLY | O_CLOEXEC);
-    while (descriptor >= 0 && (count = read(descriptor, block, BLOCK)) > 0) {
-        *crc = crc32_z(*crc, block, (size_t)count);
-    }
-    return descriptor < 0 || count < 0 ? fail_system(error, file) : STATUS_OK;
-}
-
 static uLong add_section(uLong crc, const struct section *section)
 {
     const int64_t shape[] = {(int64_t)section->type, section->rows, section->cols};
@@ -52,7 +38,9 @@ enum status checkpoint_identify(const struct scene *scene, const struct stream *
 {
     uLong crc = scene->checksum;
     for (int64_t i = 0; i < scene->files.count; i++) {
-        RETURN_IF_ERROR(add_file(scene->files.names[i], &crc, error));
+        FREED_BY(textfile_free) struct textfile file = {0};
+        RETURN_IF_ERROR(bytefile_read(scene->files.names[i], SIZE_MAX, &file, error));
+        crc = crc32_z(crc, (const Bytef *)file.text, file.size);
     }
     identity->scene = (uint32_t)crc;
     identity->input = checkpoint_identify_input(input);

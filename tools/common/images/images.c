@@ -106,14 +106,6 @@ void tool_write_image(const struct tool *tool, const struct image *image)
     TOOL_TRY(tool, write_image(tool, image, data, &error));
 }
 
-const char *image_text(const struct image *image, char text[128])
-{
-    snprintf(text, 128, "%zu x %zu x %zu voxels of %.4g x %.4g x %.4g mm", image->size[0], image->size[1],
-             image->size[2], 1e3 * image_step(image, 0), 1e3 * image_step(image, 1),
-             1e3 * image_step(image, 2));
-    return text;
-}
-
 /* ---- a body and the voxels of an image ---- */
 
 static const double most_ratio = 100; /* body to image */

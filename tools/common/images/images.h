@@ -19,9 +19,6 @@ void tool_check_image_output(const struct tool *tool);
 /* Write an image to tool->output, in the format of its name, else that of the image; exits on failure. */
 void tool_write_image(const struct tool *tool, const struct image *image);
 
-/* "181 x 217 x 181 voxels of 1 x 1 x 1 mm" into text[128]; returns it. */
-const char *image_text(const struct image *image, char text[128]);
-
 /* The world axis to which the slices along a voxel axis are perpendicular; -1: none. */
 int image_axis_across(const struct image *image, int voxel);
 
