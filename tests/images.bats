@@ -286,7 +286,7 @@ NRRD0005\nsizes: 2 1 2\n\n|stands in front of the number of dimensions
 @mDimSize = 2 2 1\n@e|DimSize= 2 2 1: stands twice
 @mBinaryDataByteOrderMSB = True\nElementByteOrderMSB = False\n@e|contradict
 @mDistanceUnits = cm\n@e|one of these is read: mm
-@mCompressedData = perhaps\n@e|True or False
+@mCompressedData = perhaps\n@e|one of these is read
 @mElementNumberOfChannels = 0\n@e|from 1 to
 ObjectType = Mesh\n|one of these is read: Image
 NDims = 3\nElementDataFile = LOCAL\n1|no ElementType

@@ -9,8 +9,8 @@ struct metaimage {
     struct image *image;
     struct image_layout layout;
     int64_t dimension, channels;
-    bool element_msb; /* the older key of the byte order */
-    bool is_compressed, is_binary;
+    int is_msb, element_msb; /* the newer and the older key of the byte order */
+    int is_compressed, is_binary;
     int word; /* of those of which only one is read */
     double size[3], spacing[3], element[3], origin[3], axes[9];
 };
@@ -18,6 +18,7 @@ struct metaimage {
 /* Fields of which it counts whether they are there. */
 enum { SIZE, SPACING, ELEMENT, MATRIX, ORIGIN, BINARY_MSB, ELEMENT_MSB };
 
+#define FLAG "False|F|0 True|T|1"
 #define AT(member) offsetof(struct metaimage, member)
 
 static const struct header_field fields[] = {
@@ -26,15 +27,15 @@ static const struct header_field fields[] = {
     [ELEMENT] = {"ElementSize", HEADER_VECTOR, AT(element)},
     [MATRIX] = {"TransformMatrix|Rotation|Orientation", HEADER_MATRIX, AT(axes)},
     [ORIGIN] = {"Offset|Position|Origin", HEADER_VECTOR, AT(origin)},
-    [BINARY_MSB] = {"BinaryDataByteOrderMSB", HEADER_FLAG, AT(layout.swapped)},
-    [ELEMENT_MSB] = {"ElementByteOrderMSB", HEADER_FLAG, AT(element_msb)},
+    [BINARY_MSB] = {"BinaryDataByteOrderMSB", HEADER_WORD, AT(is_msb), .words = FLAG},
+    [ELEMENT_MSB] = {"ElementByteOrderMSB", HEADER_WORD, AT(element_msb), .words = FLAG},
     {"ObjectType", HEADER_WORD, AT(word), .words = "Image"},
     {"Comment", HEADER_TEXT, AT(image)},
     {"NDims", HEADER_INTEGER, AT(dimension), 2, 3},
     {"ElementNumberOfChannels", HEADER_INTEGER, AT(channels), 1, INT32_MAX},
     {"ElementType", HEADER_TYPE, AT(layout)},
-    {"CompressedData", HEADER_FLAG, AT(is_compressed)},
-    {"BinaryData", HEADER_FLAG, AT(is_binary)},
+    {"CompressedData", HEADER_WORD, AT(is_compressed), .words = FLAG},
+    {"BinaryData", HEADER_WORD, AT(is_binary), .words = FLAG},
     {"HeaderSize", HEADER_INTEGER, AT(layout.skip_bytes), -1, HEADER_SKIP},
     {"DistanceUnits", HEADER_WORD, AT(word), .words = "mm|?"},
     {"ObjectSubType|TransformType|Name|ID|ParentID|Color|AcquisitionDate|CenterOfRotation|"
@@ -88,7 +89,7 @@ enum status metaimage_header(struct image_bytes *file, struct image *image, stru
 {
     struct text_header header = {.file = file, .separator = '='};
     struct metaimage meta = {
-        .image = image, .layout = {.together = true}, .spacing = {1, 1, 1}, .channels = 1, .is_binary = true};
+        .image = image, .layout = {.together = true}, .spacing = {1, 1, 1}, .channels = 1, .is_binary = 1};
     header.dimension = &meta.dimension;
     for (;;) {
         RETURN_IF_ERROR(header_next(&header, error));
@@ -105,13 +106,12 @@ enum status metaimage_header(struct image_bytes *file, struct image *image, stru
     } else if (header.cut) {
         return fail(error, STATUS_INPUT, "cut short: no data behind the header");
     }
-    if (header_has(&header, ELEMENT_MSB)) {
-        if (header_has(&header, BINARY_MSB) && meta.layout.swapped != meta.element_msb) {
-            return fail(error, STATUS_INPUT,
-                        "header: BinaryDataByteOrderMSB and ElementByteOrderMSB contradict each other");
-        }
-        meta.layout.swapped = meta.element_msb;
+    if (header_has(&header, ELEMENT_MSB) && header_has(&header, BINARY_MSB) &&
+        meta.is_msb != meta.element_msb) {
+        return fail(error, STATUS_INPUT,
+                    "header: BinaryDataByteOrderMSB and ElementByteOrderMSB contradict each other");
     }
+    meta.layout.swapped = meta.is_msb || meta.element_msb;
     *layout = meta.layout;
     layout->encoding = meta.is_compressed ? IMAGE_PACKED : meta.is_binary ? IMAGE_RAW : IMAGE_ASCII;
     if (layout->type == NULL || !header_has(&header, SIZE)) {

@@ -145,14 +145,6 @@ static enum status take_word(const struct text_header *header, const char *words
     return header_fail(header, why, error);
 }
 
-static enum status take_flag(const struct text_header *header, bool *flag, struct error *error)
-{
-    *flag = header->value[0] != '\0' && strchr("Tt1", header->value[0]) != NULL;
-    return *flag || (header->value[0] != '\0' && strchr("Ff0", header->value[0]) != NULL)
-               ? STATUS_OK
-               : header_fail(header, "True or False is expected", error);
-}
-
 static bool leads_up(const char *path)
 {
     for (; *path != '\0'; path += strcspn(path, "/")) {
@@ -196,8 +188,6 @@ static enum status take(const struct header_field *field, void *context, const s
         return header_data_file(header, at, error);
     case HEADER_WORD:
         return take_word(header, field->words, at, error);
-    case HEADER_FLAG:
-        return take_flag(header, at, error);
     case HEADER_TEXT:
         image_describe(*(struct image **)at, header->value);
         return STATUS_OK;

@@ -29,7 +29,7 @@ MUST_CHECK enum status header_next(struct text_header *header, struct error *err
 /* The keys of a field, A|B, and what takes its value: a function, NULL where only whether it is there counts;
  * or a place in the context: of a whole number (int64_t) from least to most, of numbers (double), one for
  * each dimension or pair of these; of an image_layout, for the type of the values or their file; of the
- * number (int) of one of some words, A|B each; of True or False (bool); of a pointer to the image, which it
+ * number (int) of one of some words, A|B each; of a pointer to the image, which it
  * describes. HEADER_LEFT: it is known, and means nothing here. */
 struct header_field {
     const char *keys;
@@ -41,7 +41,6 @@ struct header_field {
         HEADER_TYPE,
         HEADER_FILE,
         HEADER_WORD,
-        HEADER_FLAG,
         HEADER_TEXT,
         HEADER_LEFT
     } kind;

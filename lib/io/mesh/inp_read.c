@@ -9,19 +9,14 @@
 
 /* ---- lines and fields ---- */
 
-static bool is_blank(char c)
-{
-    return c == ' ' || c == '\t' || c == '\r';
-}
-
 /* Take blanks off both ends. */
 static void trim(const char **text, int64_t *length)
 {
-    while (*length > 0 && is_blank(**text)) {
+    while (*length > 0 && input_is_blank(**text)) {
         ++*text;
         --*length;
     }
-    while (*length > 0 && is_blank((*text)[*length - 1])) {
+    while (*length > 0 && input_is_blank((*text)[*length - 1])) {
         --*length;
     }
 }
