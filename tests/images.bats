@@ -275,7 +275,7 @@ NRRD0005\nsizes: 2 1 2\n\n|stands in front of the number of dimensions
 @tdimension: 4\nsizes: 2 1 2 2\nkinds: domain domain domain domain\n\n1|dimension 4: 
 @t@skinds: domain list domain\n\n|dimension 2 holds the values
 @t@skinds: vector list domain\n\n|dimension 2: two or three
-@fdata file: data.raw\n\n|give its name, which ends in .nhdr or .mhd
+@fdata file: data.raw\n\n|its data, data.raw: No such file
 @fSegment0_Name:=LONG\n\n|a name of more than 127 bytes
 @fnonsense\n\n|'nonsense': no ':' behind a key
 @m|ends without ElementDataFile

@@ -192,19 +192,6 @@ static enum status nifti_header(struct image_bytes *file, const char *name, stru
     return header.pair ? name_partner(name, layout, error) : STATUS_OK;
 }
 
-/* A header of text that names another file is a file itself. */
-static enum status check_detached(const struct image *image, const struct image_layout *layout,
-                                  const char *name, struct error *error)
-{
-    bool known = text_ends(name, ".nhdr") || text_ends(name, ".nrrd") || text_ends(name, ".mhd") ||
-                 text_ends(name, ".mha");
-    return layout->data_file[0] == '\0' || image->format <= IMAGE_NIFTI || known
-               ? STATUS_OK
-               : fail(error, STATUS_INPUT,
-                      "is a header whose data are in a file of their own: give its name, which ends in .nhdr "
-                      "or .mhd");
-}
-
 static enum status read_file(struct image_bytes *file, const char *name, struct image *image,
                              struct error *error)
 {
@@ -224,7 +211,6 @@ static enum status read_file(struct image_bytes *file, const char *name, struct 
     if (layout.skip_bytes < 0 && layout.encoding != IMAGE_RAW) {
         return fail(error, STATUS_INPUT, "header: a skip of -1 goes with raw data only");
     }
-    RETURN_IF_ERROR(check_detached(image, &layout, name, error));
     return layout.data_file[0] != '\0' ? read_partner(name, &layout, image, error)
                                        : image_values_read(file, &layout, image, error);
 }
