@@ -72,13 +72,6 @@ struct mesh_part {
     const struct names *names;
 };
 
-static void print_names(FILE *file, const struct mesh_part *part)
-{
-    for (int32_t g = 0; g < part->names->count; g++) {
-        fprintf(file, "%d %d \"%s\"\n", part->dim, g + 1, part->names->name[g]);
-    }
-}
-
 static void print_elements(FILE *file, const struct mesh_part *part, int64_t *tag)
 {
     for (int64_t e = 0; e < part->count; e++) {
@@ -109,7 +102,9 @@ static void write_msh(FILE *file, const struct body *body, double unit)
     }
     fprintf(file, "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n%" PRId64 "\n", names);
     for (int k = 0; k < 3; k++) {
-        print_names(file, &part[k]);
+        for (int32_t g = 0; g < part[k].names->count; g++) {
+            fprintf(file, "%d %d \"%s\"\n", part[k].dim, g + 1, part[k].names->name[g]);
+        }
     }
     fprintf(file, "$EndPhysicalNames\n$Nodes\n%" PRId64 "\n", cells->node_count);
     for (int64_t n = 0; n < cells->node_count; n++) {

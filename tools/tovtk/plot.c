@@ -169,12 +169,6 @@ static bool begins_with(const char *text, const char *prefix)
     return strncmp(text, prefix, strlen(prefix)) == 0;
 }
 
-/* Whether a section describes the reference state, which is the same in all frames. */
-static bool is_static(const char *name)
-{
-    return section_stage(name) < MADE_WITH_RESULTS || begins_with(name, DERIVED_GROUP);
-}
-
 /* Whether a section is a list, geometry, or of neither nodes nor cells, for any number of rows. */
 static bool is_structure(const char *name)
 {
@@ -211,10 +205,12 @@ static void choose_field(struct plot *plot, const struct section *section, int64
     struct plot_field field = {.section = section};
     size_t length;
     int64_t of = frame_of(section->name, &length);
-    bool is_wanted = of == frame || (of == FRAME_NONE && is_static(section->name));
+    bool is_derived = begins_with(section->name, DERIVED_GROUP);
+    /* What describes the reference state is the same in all frames. */
+    bool is_wanted =
+        of == frame || (of == FRAME_NONE && (is_derived || section_stage(section->name) < MADE_WITH_RESULTS));
     if (is_wanted && is_field(&plot->cells, section, &field.of_cells)) {
-        field.name =
-            begins_with(section->name, DERIVED_GROUP) ? strchr(section->attributes, '=') + 1 : section->name;
+        field.name = is_derived ? strchr(section->attributes, '=') + 1 : section->name;
         if (of != FRAME_NONE) {
             char *label = plot->labels[plot->field_count];
             snprintf(label, sizeof plot->labels[0], "%.*s", (int)length, section->name);

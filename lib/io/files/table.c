@@ -49,11 +49,6 @@ struct form {
     int least, most, open, closed;
 };
 
-static bool is_no_value(const char *word)
-{
-    return strcmp(word, "-") == 0 || strcasecmp(word, "nan") == 0;
-}
-
 /* Split a line, which is modified, into *count numbers; 0 for a blank or comment line. */
 static enum status read_row(const char *path, int64_t line, char *text, const struct form *form,
                             double row[COLUMN_LIMIT], int *count, struct error *error)
@@ -64,7 +59,8 @@ static enum status read_row(const char *path, int64_t line, char *text, const st
         if (*count == COLUMN_LIMIT) {
             return fail(error, STATUS_INPUT, "%s:%jd: more than %d columns", path, line, COLUMN_LIMIT);
         }
-        if (*count >= form->open && *count < form->closed && is_no_value(word)) {
+        if (*count >= form->open && *count < form->closed &&
+            (strcmp(word, "-") == 0 || strcasecmp(word, "nan") == 0)) {
             row[*count] = NAN;
         } else if (parse_double(word, "", -DBL_MAX, DBL_MAX, &row[*count], &why) != STATUS_OK) {
             return fail(error, STATUS_INPUT, "%s:%jd: column %d: '%.63s' is not a finite number%s", path,

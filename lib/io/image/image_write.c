@@ -158,12 +158,6 @@ static enum status write_values(const struct image *image, const unsigned char *
     return STATUS_OK;
 }
 
-/* A type that holds scaled values of a type. */
-static int real_type(const struct nifti_type *type)
-{
-    return type->code == IMAGE_FLOAT32 || type->bytes < 4 ? IMAGE_FLOAT32 : IMAGE_FLOAT64;
-}
-
 /* The image without scaling, which headers of text do not know; its values are those of the image. */
 static enum status unscaled(const struct image *image, struct image *plain, struct error *error)
 {
@@ -173,7 +167,9 @@ static enum status unscaled(const struct image *image, struct image *plain, stru
                     image->datatype);
     }
     *plain = *image;
-    plain->datatype = is_scaled(image, type) ? real_type(type) : image->datatype;
+    if (is_scaled(image, type)) { /* a type that holds scaled values */
+        plain->datatype = type->code == IMAGE_FLOAT32 || type->bytes < 4 ? IMAGE_FLOAT32 : IMAGE_FLOAT64;
+    }
     plain->slope = 1;
     plain->inter = 0;
     return STATUS_OK;

@@ -17,12 +17,6 @@ static bool is_end_of_line(char c)
     return c == '\n' || c == '\r';
 }
 
-/* MSH 1 has no $MeshFormat. */
-static bool is_mesh1(const char *bytes, size_t size)
-{
-    return size > 4 && memcmp(bytes, "$NOD", 4) == 0 && is_end_of_line(bytes[4]);
-}
-
 static enum status fail_version(double version, struct error *error)
 {
     return fail(error, STATUS_INPUT,
@@ -226,7 +220,7 @@ enum status msh_parse(struct msh *msh, const char *bytes, size_t size, const cha
     reader.members = MEMBERS_PER_BYTE * (int64_t)size;
     const struct format *format = find_format(bytes, size);
     *msh = (struct msh){0};
-    if (is_mesh1(bytes, size)) {
+    if (size > 4 && memcmp(bytes, "$NOD", 4) == 0 && is_end_of_line(bytes[4])) { /* no $MeshFormat */
         return fail_version(1, error);
     }
     if (format == NULL) {
