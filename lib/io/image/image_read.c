@@ -182,16 +182,6 @@ static enum status read_partner(const char *name, const struct image_layout *lay
     return fail_in(error, status, "its data, %s", partner);
 }
 
-static enum status nifti_header(struct image_bytes *file, const char *name, struct image *image,
-                                struct image_layout *layout, struct error *error)
-{
-    struct nifti header;
-    RETURN_IF_ERROR(read_header(file, &header, image, error));
-    RETURN_IF_ERROR(check_header(&header, (int64_t)file->at, image, layout, error));
-    RETURN_IF_ERROR(nifti_space(&header, image, error));
-    return header.pair ? name_partner(name, layout, error) : STATUS_OK;
-}
-
 static enum status read_file(struct image_bytes *file, const char *name, struct image *image,
                              struct error *error)
 {
@@ -206,7 +196,11 @@ static enum status read_file(struct image_bytes *file, const char *name, struct 
         RETURN_IF_ERROR(metaimage_header(file, image, &layout, error));
     } else {
         image->format = file->was_packed ? IMAGE_NIFTI_GZIP : IMAGE_NIFTI;
-        RETURN_IF_ERROR(nifti_header(file, name, image, &layout, error));
+        struct nifti header;
+        RETURN_IF_ERROR(read_header(file, &header, image, error));
+        RETURN_IF_ERROR(check_header(&header, (int64_t)file->at, image, &layout, error));
+        RETURN_IF_ERROR(nifti_space(&header, image, error));
+        RETURN_IF_ERROR(header.pair ? name_partner(name, &layout, error) : STATUS_OK);
     }
     if (layout.skip_bytes < 0 && layout.encoding != IMAGE_RAW) {
         return fail(error, STATUS_INPUT, "header: a skip of -1 goes with raw data only");

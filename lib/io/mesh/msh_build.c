@@ -292,29 +292,34 @@ static enum status check_coincident(struct mesh *mesh)
 /* Put the arrays, which the stream takes. */
 static enum status put(struct mesh *mesh, struct stream *stream)
 {
-    struct error *error = mesh->error;
-    int dim = mesh->dim;
-    int64_t sets = mesh->node_sets.count, members = mesh->set_ptr[sets];
-    RETURN_IF_ERROR(stream_put(stream, "nodes.x", TYPE_F8, mesh->node_count, dim,
-                               dim == 2 ? "unit=m cols=x,y" : "unit=m cols=x,y,z", array_take(&mesh->x), true,
-                               error));
-    if (mesh->cell_count > 0) {
-        RETURN_IF_ERROR(stream_put(stream, "cells", TYPE_I4, mesh->cell_count, dim + 1, "",
-                                   array_take(&mesh->cells), true, error));
-        RETURN_IF_ERROR(stream_put_named(stream, "cells.region", TYPE_I4, mesh->cell_count, &mesh->regions,
-                                         array_take(&mesh->cell_region), true, error));
-    }
-    if (mesh->facet_count > 0) {
-        RETURN_IF_ERROR(stream_put(stream, "facets", TYPE_I4, mesh->facet_count, dim, "",
-                                   array_take(&mesh->facets), true, error));
-        RETURN_IF_ERROR(stream_put_named(stream, "facets.set", TYPE_I4, mesh->facet_count, &mesh->facet_sets,
-                                         array_take(&mesh->facet_set), true, error));
-    }
-    if (sets > 0) {
-        RETURN_IF_ERROR(stream_put_named(stream, "sets.ptr", TYPE_I8, sets + 1, &mesh->node_sets,
-                                         array_take(&mesh->set_ptr), true, error));
-        RETURN_IF_ERROR(
-            stream_put(stream, "sets.idx", TYPE_I4, members, 1, "", array_take(&mesh->set_idx), true, error));
+    int64_t dim = mesh->dim, sets = mesh->node_sets.count;
+    const struct {
+        const char *name;
+        enum element_type type;
+        int64_t rows, cols;
+        const struct names *names;
+        void *array;
+    } parts[] = {
+        {"nodes.x", TYPE_F8, mesh->node_count, dim, NULL, &mesh->x},
+        {"cells", TYPE_I4, mesh->cell_count, dim + 1, NULL, &mesh->cells},
+        {"cells.region", TYPE_I4, mesh->cell_count, 1, &mesh->regions, &mesh->cell_region},
+        {"facets", TYPE_I4, mesh->facet_count, dim, NULL, &mesh->facets},
+        {"facets.set", TYPE_I4, mesh->facet_count, 1, &mesh->facet_sets, &mesh->facet_set},
+        {"sets.ptr", TYPE_I8, sets > 0 ? sets + 1 : 0, 1, &mesh->node_sets, &mesh->set_ptr},
+        {"sets.idx", TYPE_I4, mesh->set_ptr[sets], 1, NULL, &mesh->set_idx},
+    };
+    for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
+        const char *attributes = i > 0 ? "" : dim == 2 ? "unit=m cols=x,y" : "unit=m cols=x,y,z";
+        void *array = array_take(parts[i].array);
+        if (parts[i].rows == 0) {
+            free(array);
+            continue;
+        }
+        RETURN_IF_ERROR(parts[i].names != NULL
+                            ? stream_put_named(stream, parts[i].name, parts[i].type, parts[i].rows,
+                                               parts[i].names, array, true, mesh->error)
+                            : stream_put(stream, parts[i].name, parts[i].type, parts[i].rows, parts[i].cols,
+                                         attributes, array, true, mesh->error));
     }
     return STATUS_OK;
 }

@@ -77,15 +77,6 @@ static int compare_cells(const void *left, const void *right)
     return nodes != 0 ? nodes : (a->element > b->element) - (a->element < b->element);
 }
 
-static void key_cell(const struct mesh *mesh, int64_t element, struct keyed_cell *key)
-{
-    const struct msh *msh = mesh->msh;
-    const int32_t *node = &msh->node_idx[msh->elements[element].first];
-    key->element = element;
-    memset(key->node, 0xff, sizeof key->node);
-    sort_nodes(mesh_corners(mesh, element), node, key->node);
-}
-
 /* is_cell[element]: it has the mesh's dimension and is the first element with its nodes. */
 static enum status find_cells(struct mesh *mesh, bool is_cell[])
 {
@@ -95,7 +86,9 @@ static enum status find_cells(struct mesh *mesh, bool is_cell[])
     for (int64_t e = 0; e < msh->element_count; e++) {
         is_cell[e] = mesh_element_dim(mesh, e) == mesh->dim;
         if (is_cell[e]) {
-            key_cell(mesh, e, &keys[count++]);
+            keys[count].element = e;
+            memset(keys[count].node, 0xff, sizeof keys->node);
+            sort_nodes(mesh_corners(mesh, e), &msh->node_idx[msh->elements[e].first], keys[count++].node);
         }
     }
     qsort(keys, (size_t)count, sizeof *keys, compare_cells);

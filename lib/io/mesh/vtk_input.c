@@ -155,16 +155,6 @@ static void add_sets(struct vtk_input *v)
     }
 }
 
-/* Group elements by the array of the regions, add those of sets: all cells are there. */
-static void vtk_add_groups(struct vtk_input *v)
-{
-    const struct vtk_array *array = v->r->status == STATUS_OK ? find_regions(v) : NULL;
-    if (array != NULL && v->r->status == STATUS_OK) {
-        add_regions(v, array);
-    }
-    add_sets(v);
-}
-
 /* ---- arrays ---- */
 
 static bool begins(const char *name, const char *begin)
@@ -335,7 +325,11 @@ void vtk_build(struct vtk_input *v)
     input_at(r, "grid", 0);
     add_nodes(v);
     add_cells(v);
-    vtk_add_groups(v);
+    const struct vtk_array *regions = r->status == STATUS_OK ? find_regions(v) : NULL;
+    if (regions != NULL && r->status == STATUS_OK) {
+        add_regions(v, regions);
+    }
+    add_sets(v);
     for (int64_t i = 0; i < v->count; i++) {
         free(v->arrays[i].value);
     }

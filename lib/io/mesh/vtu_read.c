@@ -1,7 +1,6 @@
 /* Files of VTK in XML: unstructured grids, with data as text, in base64, or appended. */
 
 #include "io/mesh/vtk_input.h"
-#include "io/mesh/xml.h"
 
 #include "base/lists.h"
 
