@@ -185,7 +185,7 @@ enum status image_write_data(const struct image *image, FILE *file, struct error
 enum status image_write(const struct image *image, FILE *file, enum image_format format,
                         const char *data_file, struct error *error)
 {
-    unsigned char header[NIFTI2_HEADER + 4];
+    unsigned char header[NIFTI_MOST];
     struct image plain;
     RETURN_IF_ERROR(unscaled(image, &plain, error));
     if (format == IMAGE_NRRD || format == IMAGE_METAIMAGE) {
