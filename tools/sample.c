@@ -60,7 +60,6 @@ static const char usage[] =
 #include "points.h"
 #include "stage_options.h"
 #include "output.h"
-#include "images/tissue.h"
 #include "io/stream/sections.h"
 #include "stages/views.h"
 

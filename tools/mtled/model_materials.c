@@ -1,5 +1,5 @@
 #include "mtled/model.h"
-#include "images/tissue.h"
+#include "images/images.h"
 
 #include "base/vector.h"
 #include "io/files/table.h"
