@@ -38,9 +38,6 @@ static const struct header_field fields[] = {
     {"BinaryData", HEADER_WORD, AT(is_binary), .words = FLAG},
     {"HeaderSize", HEADER_INTEGER, AT(layout.skip_bytes), -1, HEADER_SKIP},
     {"DistanceUnits", HEADER_WORD, AT(word), .words = "mm|?"},
-    {"ObjectSubType|TransformType|Name|ID|ParentID|Color|AcquisitionDate|CenterOfRotation|"
-     "AnatomicalOrientation|CompressedDataSize|Modality|SequenceID|ElementMin|ElementMax|ElementNBits",
-     HEADER_LEFT},
 };
 
 bool metaimage_begins(const unsigned char bytes[4])
@@ -76,7 +73,6 @@ static enum status place(const struct metaimage *meta, const struct text_header 
     if (!header_has(header, ORIGIN)) {
         image_note(image, "has no Offset: the first voxel lies at 0");
     }
-    header_note_unknown(header, image);
     image->intent = meta->channels > 1 ? IMAGE_INTENT_VECTOR : 0;
     image->unit = 1e-3;
     image->space = IMAGE_SPACE_SCANNER;

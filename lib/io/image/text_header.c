@@ -191,8 +191,6 @@ static enum status take(const struct header_field *field, void *context, const s
     case HEADER_TEXT:
         image_describe(*(struct image **)at, header->value);
         return STATUS_OK;
-    case HEADER_LEFT:
-        return STATUS_OK;
     case HEADER_SET:
         break;
     }
@@ -204,21 +202,13 @@ enum status header_set(struct text_header *header, const struct header_field *fi
 {
     for (size_t f = 0; f < count; f++) {
         if (header_is(fields[f].keys, header->key)) {
-            uint64_t bit = (uint64_t)1 << f, given = fields[f].kind != HEADER_LEFT ? header->given : 0;
+            bool again = header_has(header, (int)f);
             RETURN_IF_ERROR(take(&fields[f], context, header, error));
-            header->given |= bit;
-            return (given & bit) == 0 ? STATUS_OK : header_fail(header, "stands twice: take one out", error);
+            header->given |= (uint64_t)1 << f;
+            return again ? header_fail(header, "stands twice: take one out", error) : STATUS_OK;
         }
     }
-    text_append(header->unknown, sizeof header->unknown, ", %.40s", header->key);
     return STATUS_OK;
-}
-
-void header_note_unknown(const struct text_header *header, struct image *image)
-{
-    if (header->unknown[0] != '\0') {
-        image_note(image, "fields that are not known, left out: %s", header->unknown + 2);
-    }
 }
 
 enum status header_sizes(const double size[3], double components, bool colour,
