@@ -86,6 +86,14 @@ static bool has_section(const struct stream *stream, const char *name, const cha
     return stream_find(stream, full) != NULL;
 }
 
+/* Put fields into the stream, derived from the symmetric tensors stress and strain of a frame (X.frame.K
+ * gives X.NAME.frame.K) or of the final state (FRAME_NONE), with the same rows:
+ *
+ *   stress.von_mises   sqrt(3/2 s:s), s the deviator, Pa
+ *   stress.principal   the principal stresses, Pa, the largest first
+ *   pressure           -tr(stress)/3, Pa, unless the stream has it
+ *   strain.principal   the principal strains, the largest first
+ *   J                  sqrt det(1 + 2 strain), exactly det F, unless the stream has volume_ratio */
 static enum status add_invariants(struct stream *stream, int64_t frame, struct error *error)
 {
     char name[160];
@@ -138,28 +146,6 @@ static enum status add_groups(struct stream *stream, const char *prefix, const s
             stream_put(stream, name, TYPE_I4, node_count, 1, label, array_take(&value), true, error));
     }
     return STATUS_OK;
-}
-
-/* Put fields into the stream, derived from the symmetric tensors stress and strain of a frame (X.frame.K
- * gives X.NAME.frame.K) or of the final state (FRAME_NONE), with the same rows:
- *
- *   stress.von_mises   sqrt(3/2 s:s), s the deviator, Pa
- *   stress.principal   the principal stresses, Pa, the largest first
- *   pressure           -tr(stress)/3, Pa, unless the stream has it
- *   strain.principal   the principal strains, the largest first
- *   J                  sqrt det(1 + 2 strain), exactly det F, unless the stream has volume_ratio
- *
- * And the groups of facets and the node sets: 1 at the nodes of the group and 0 elsewhere. STATUS_INPUT for
- * groups that do not fit the nodes. */
-static enum status derived_add(struct stream *stream, const struct cells *cells, int64_t frame,
-                               struct error *error)
-{
-    FREED_BY(groups_free) struct groups facets = {0}, sets = {0};
-    RETURN_IF_ERROR(add_invariants(stream, frame, error));
-    RETURN_IF_ERROR(stream_groups(stream, GROUP_FACETS, false, &facets, error));
-    RETURN_IF_ERROR(add_groups(stream, "facets", &facets, cells->node_count, cells->dim, error));
-    RETURN_IF_ERROR(stream_groups(stream, GROUP_NODES, false, &sets, error));
-    return add_groups(stream, "set", &sets, cells->node_count, 1, error);
 }
 
 /* ---- the plot ---- */
@@ -223,10 +209,16 @@ static void choose_field(struct plot *plot, const struct section *section, int64
 enum status plot_choose(struct plot *plot, int64_t frame, struct error *error)
 {
     struct stream *stream = &plot->stream;
+    const struct cells *cells = &plot->cells;
+    FREED_BY(groups_free) struct groups facets = {0}, sets = {0};
     while (stream->section_count > plot->given) {
         stream_remove(stream, stream->sections[stream->section_count - 1].name);
     }
-    RETURN_IF_ERROR(derived_add(stream, &plot->cells, frame, error));
+    RETURN_IF_ERROR(add_invariants(stream, frame, error));
+    RETURN_IF_ERROR(stream_groups(stream, GROUP_FACETS, false, &facets, error));
+    RETURN_IF_ERROR(add_groups(stream, "facets", &facets, cells->node_count, cells->dim, error));
+    RETURN_IF_ERROR(stream_groups(stream, GROUP_NODES, false, &sets, error));
+    RETURN_IF_ERROR(add_groups(stream, "set", &sets, cells->node_count, 1, error));
     RETURN_IF_ERROR(RESIZE_ARRAY(&plot->fields, stream->section_count, error));
     RETURN_IF_ERROR(RESIZE_ARRAY(&plot->labels, stream->section_count, error));
     plot->field_count = 0;

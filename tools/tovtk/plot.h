@@ -30,7 +30,8 @@ MUST_CHECK enum status plot_find(struct plot *plot, struct error *error);
 /* Release everything, including the stream. */
 void plot_free(struct plot *plot);
 
-/* Choose the fields of a frame, or of the final state for FRAME_NONE. */
+/* Choose the fields of a frame, or of the final state for FRAME_NONE: those of the stream, and those derived
+ * from them. STATUS_INPUT for groups that do not fit the nodes. */
 MUST_CHECK enum status plot_choose(struct plot *plot, int64_t frame, struct error *error);
 
 /* Attribute time= of the first section of the frame that has one, else its number; 0 for the final state. */

@@ -47,9 +47,7 @@ enum status checkpoint_identify(const struct scene *scene, const struct stream *
     return STATUS_OK;
 }
 
-/* ---- the state ---- */
-
-/* The run's values are sections `state.NAME`. */
+/* ---- the state: the run's values are sections `state.NAME` ---- */
 
 enum { NAME_SIZE = 112 };
 
@@ -59,27 +57,20 @@ static void section_name(const struct state_value *value, char name[NAME_SIZE])
 }
 
 /* Flags are saved as numbers. */
-static enum status save_flags(struct stream *stream, const char *name, const struct state_value *value,
-                              struct error *error)
-{
-    const bool *flags = value->values;
-    int32_t *numbers;
-    RETURN_IF_ERROR(NEW_ARRAY(&numbers, value->count, error));
-    for (int64_t i = 0; i < value->count; i++) {
-        numbers[i] = flags[i];
-    }
-    return stream_put(stream, name, TYPE_I4, value->count, 1, "", numbers, true, error);
-}
-
 static enum status save(void *context, const struct state_value *value, struct error *error)
 {
     char name[NAME_SIZE];
+    int32_t *numbers;
     section_name(value, name);
-    if (value->type == STATE_FLAGS) {
-        return save_flags(context, name, value, error);
+    if (value->type != STATE_FLAGS) {
+        return stream_put(context, name, value->type == STATE_NUMBERS ? TYPE_F8 : TYPE_I8, value->count, 1,
+                          "", value->values, false, error);
     }
-    return stream_put(context, name, value->type == STATE_NUMBERS ? TYPE_F8 : TYPE_I8, value->count, 1, "",
-                      value->values, false, error);
+    RETURN_IF_ERROR(NEW_ARRAY(&numbers, value->count, error));
+    for (int64_t i = 0; i < value->count; i++) {
+        numbers[i] = ((const bool *)value->values)[i];
+    }
+    return stream_put(context, name, TYPE_I4, value->count, 1, "", numbers, true, error);
 }
 
 static enum status restore(void *context, const struct state_value *value, struct error *error)

@@ -5,6 +5,7 @@
 #include "io/files/textfile.h"
 #include "base/vector.h"
 
+#include <ctype.h>
 #include <float.h>
 #include <math.h>
 #include <stdbool.h>
@@ -77,24 +78,20 @@ static bool is_word(const struct words *words, const char *word)
     return strcasecmp(words->word, word) == 0;
 }
 
-/* Read a facet, of which "facet" has been read. */
+/* Read a facet, of which "facet" has been read: these words, where 0 is a coordinate, and * is not used. */
 static enum status read_facet(struct words *words, struct table *table, struct error *error)
 {
-    static const char
-        *const form[] = {"normal", NULL, NULL, NULL,     "outer",   "loop",    "vertex",
-                         "",       "",   "",   "vertex", "",        "",        "",
-                         "vertex", "",   "",   "",       "endloop", "endfacet"}; /* "": a coordinate; NULL:
-                                                                                    any word */
+    char form[] = "normal * * * outer loop vertex 0 0 0 vertex 0 0 0 vertex 0 0 0 endloop endfacet",
+         *rest = form;
     struct error why;
     int64_t line = words->line;
     double row[9], *x = row;
-    for (size_t i = 0; i < sizeof form / sizeof *form; i++) {
+    for (const char *wanted = text_word(&rest); *wanted != '\0'; wanted = text_word(&rest)) {
         bool any = next_word(words);
-        if (form[i] != NULL && form[i][0] == '\0' &&
-            parse_double(words->word, "", -DBL_MAX, DBL_MAX, x++, &why) != STATUS_OK) {
+        if (*wanted == '0' && parse_double(words->word, "", -DBL_MAX, DBL_MAX, x++, &why) != STATUS_OK) {
             return fail_word(words, "is not a finite number", error);
         }
-        if (!any || (form[i] != NULL && form[i][0] != '\0' && !is_word(words, form[i]))) {
+        if (!any || (isalpha((unsigned char)*wanted) && !is_word(words, wanted))) {
             return fail_word(words, "has no place here: a facet has three lines 'vertex X Y Z'", error);
         }
     }
