@@ -335,7 +335,7 @@ void inp_read(struct msh_reader *r)
         read_keyword(&p);
     }
     input_at(r, "nodes", 0);
-    msh_check_nodes(r);
+    msh_check_tags(r, &r->nodes);
     inp_join_sets(&p);
     inp_free_sets(&p);
 }

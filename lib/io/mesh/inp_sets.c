@@ -374,7 +374,7 @@ void inp_join_sets(struct inp *p)
     struct msh_reader *r = p->r;
     SCRATCH struct inp_set **region = NULL; /* of each element, or NULL */
     r->section = "elements";
-    msh_check_elements(r);
+    msh_check_tags(r, &r->elements);
     input_at(r, "sets", 0);
     for (int64_t s = 0; s < p->set_count; s++) {
         if (p->sets[s]->of_section > 0 && p->sets[s]->line == 0) {

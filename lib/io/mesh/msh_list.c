@@ -65,21 +65,14 @@ static int64_t find_twice(struct msh_index *index)
     return -1;
 }
 
-void msh_check_nodes(struct msh_reader *r)
+void msh_check_tags(struct msh_reader *r, struct msh_index *index)
 {
-    int64_t again = find_twice(&r->nodes);
+    int64_t again = find_twice(index);
+    bool is_node = index == &r->nodes;
     if (again >= 0) {
-        r->record = r->msh->nodes[again].record;
-        msh_fail(r, "node tag %jd stands twice", r->msh->nodes[again].tag);
-    }
-}
-
-void msh_check_elements(struct msh_reader *r)
-{
-    int64_t again = find_twice(&r->elements);
-    if (again >= 0) {
-        r->record = 0;
-        msh_fail(r, "element tag %jd stands twice", r->msh->elements[again].tag);
+        r->record = is_node ? r->msh->nodes[again].record : 0;
+        msh_fail(r, "%s tag %jd stands twice", is_node ? "node" : "element",
+                 is_node ? r->msh->nodes[again].tag : r->msh->elements[again].tag);
     }
 }
 
@@ -137,7 +130,7 @@ void msh_finish_lists(struct msh_reader *r)
 {
     struct msh *msh = r->msh;
     int64_t tag = 0;
-    msh_check_nodes(r);
+    msh_check_tags(r, &r->nodes);
     r->section = "elements";
     r->record = 0;
     MSH_NEW(r, &msh->node_idx, r->corner_count);

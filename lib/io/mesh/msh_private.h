@@ -156,9 +156,8 @@ void msh_join_groups(struct msh_reader *reader);
 void msh_add_node(struct msh_reader *reader, int64_t tag, const double x[3]);
 void msh_add_element(struct msh_reader *reader, int64_t tag, int type, const int64_t node[], int64_t key);
 
-/* A repeated tag is a failure. */
-void msh_check_nodes(struct msh_reader *reader);
-void msh_check_elements(struct msh_reader *reader);
+/* A repeated tag, of nodes or of elements, is a failure. */
+void msh_check_tags(struct msh_reader *reader, struct msh_index *index);
 
 /* Place of `tag`, or -1; the first run that does not end before it. */
 int64_t msh_index_find(struct msh_index *index, int64_t tag);

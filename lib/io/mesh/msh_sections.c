@@ -237,7 +237,7 @@ void msh_read_nodes(struct msh_reader *r)
         r->record = 0;
         msh_fail(r, "%jd nodes, not the %jd that the section's head says", block.first, count);
     }
-    msh_check_nodes(r);
+    msh_check_tags(r, &r->nodes);
 }
 
 /* ---- $Elements ---- */
@@ -384,6 +384,6 @@ void msh_read_elements(struct msh_reader *r)
         msh_fail(r, "%jd elements, not the %jd that the section's head says", found, count);
     }
     if (r->status == STATUS_OK) {
-        msh_check_elements(r);
+        msh_check_tags(r, &r->elements);
     }
 }

@@ -105,37 +105,32 @@ static enum status read_number(const struct place *place, const char *key, const
     return read_within(place, key, text, ranges[type], value);
 }
 
-static enum status read_count(const struct place *place, const char *key, const char *text, int64_t least,
-                              int64_t most, int64_t *value)
-{
-    return fail_at(place, key, parse_integer(text, key, least, most, value, place->error));
-}
-
-static enum status read_dim(const struct place *place, const char *key, const char *text, int *dim)
-{
-    int64_t value = 0;
-    RETURN_IF_ERROR(read_count(place, key, text, 2, 3, &value));
-    *dim = (int)value;
-    return STATUS_OK;
-}
-
-static enum status read_choice(const struct place *place, const char *key, const char *text,
-                               const char *const words[], int *index)
-{
-    int count = 0;
-    while (words[count] != NULL) {
-        count++;
-    }
-    return fail_at(place, key, parse_choice(text, key, words, count, index, place->error));
-}
-
-static enum status read_yes(const struct place *place, const char *key, const char *text,
-                            const char *const words[], bool *value)
+/* Read a whole number, or a word, of which there are some: its index. */
+static enum status read_whole(const struct place *place, const struct scene_key *key, const char *text,
+                              void *value)
 {
     static const char *const no_yes[] = {"no", "yes", NULL};
-    int index;
-    RETURN_IF_ERROR(read_choice(place, key, text, words != NULL ? words : no_yes, &index));
-    *value = index == 1;
+    const char *const *words = key->words != NULL ? key->words : no_yes;
+    bool is_dim = key->type == VALUE_DIM;
+    int64_t number = 0;
+    int index = 0, count = 0;
+    if (is_dim || key->type == VALUE_COUNT) {
+        RETURN_IF_ERROR(fail_at(place, key->name,
+                                parse_integer(text, key->name, is_dim ? 2 : 1, is_dim ? 3 : key->most,
+                                              is_dim ? &number : value, place->error)));
+        index = (int)number;
+    } else {
+        while (words[count] != NULL) {
+            count++;
+        }
+        RETURN_IF_ERROR(
+            fail_at(place, key->name, parse_choice(text, key->name, words, count, &index, place->error)));
+    }
+    if (key->type == VALUE_YES) {
+        *(bool *)value = index == 1;
+    } else if (key->type != VALUE_COUNT) {
+        *(int *)value = index;
+    }
     return STATUS_OK;
 }
 
@@ -316,13 +311,10 @@ enum status place_read(const struct place *place, const struct scene_key *key, i
     case VALUE_SHARE:
         return read_number(place, key->name, text, key->type, value);
     case VALUE_DIM:
-        return read_dim(place, key->name, text, value);
     case VALUE_COUNT:
-        return read_count(place, key->name, text, 1, key->most, value);
     case VALUE_CHOICE:
-        return read_choice(place, key->name, text, key->words, value);
     case VALUE_YES:
-        return read_yes(place, key->name, text, key->words, value);
+        return read_whole(place, key, text, value);
     case VALUE_VECTOR:
         return read_vector(place, key->name, text, dim, value, is_free);
     case VALUE_NAMES:
