@@ -71,10 +71,6 @@ bool header_numbers(const char **at, int count, double *numbers);
 MUST_CHECK enum status header_integer(const struct text_header *header, int64_t least, int64_t most,
                                       int64_t *number, struct error *error);
 
-/* The value is the name of a file in the folder of the header or below. */
-MUST_CHECK enum status header_data_file(const struct text_header *header, struct image_layout *layout,
-                                        struct error *error);
-
 /* Take a pair SegmentN_KEY:=VALUE of an NRRD header; others are left. */
 MUST_CHECK enum status image_segment_field(struct image *image, const struct text_header *header,
                                            struct error *error);
