@@ -291,6 +291,9 @@ static enum status check_steps(struct scene *scene, struct error *error)
 
 static enum status check_whole(struct scene *scene, struct error *error)
 {
+    if (!(scene->solver.time_step_margin > 0.0)) { /* dynamic steps must be accurate, not only stable */
+        scene->solver.time_step_margin = scene->analysis == SCENE_DYNAMIC ? .75 : .9;
+    }
     if (scene->duration > 0.0 && !has_prony(scene) && !scene->tabulated) {
         return fail(error, STATUS_INPUT,
                     "%s: [scene]: duration: of no use: no material has prony, and no curve a table in s",
@@ -311,7 +314,7 @@ enum status scene_read(const char *path, struct scene *scene, struct error *erro
 {
     FREED_BY(reading_free) struct reading reading = {.scene = scene, .error = error};
     *scene = (struct scene){.path = path, .title = ""};
-    scene->solver = (struct scene_solver){.tolerance = 1e-5, .time_step_margin = .9};
+    scene->solver = (struct scene_solver){.tolerance = 1e-5};
     RETURN_IF_ERROR(read_lines(&reading));
     RETURN_IF_ERROR(read_sections(&reading));
     return check_whole(scene, error);

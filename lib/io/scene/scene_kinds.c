@@ -32,15 +32,6 @@ static enum status require_one(const struct place *place, const char *const keys
 
 /* ---- checks of the keys of a section together, after all have been read ---- */
 
-static enum status check_scene(const struct place *place, struct scene *scene)
-{
-    (void)place;
-    if (scene->analysis == SCENE_DYNAMIC) { /* steps must be accurate, not only stable */
-        scene->solver.time_step_margin = 0.75;
-    }
-    return STATUS_OK;
-}
-
 static enum status check_displacement(const struct place *place, struct scene *scene)
 {
     struct scene_displacement *displacement = &scene->displacements[scene->displacement_count - 1];
@@ -319,7 +310,7 @@ static const struct scene_key solver_keys[] = {
     true, offsetof(struct scene, items), offsetof(struct scene, count), sizeof *((struct scene *)0)->items
 
 static const struct scene_kind kinds[] = {
-    {"scene", scene_keys, check_scene, false, 0, 0, 0},
+    {"scene", scene_keys, NULL, false, 0, 0, 0},
     {"material", material_keys, scene_material_check, ITEMS(materials, material_count)},
     {"displacement", displacement_keys, check_displacement, ITEMS(displacements, displacement_count)},
     {"contact", contact_keys, check_contact, ITEMS(contacts, contact_count)},
