@@ -69,22 +69,15 @@ static const struct invariant {
     const char *of, *name; /* of section `of` and its frames */
     int cols;
     const char *attributes;
-    const char *given; /* left out if the stream has this section */
+    const char *given; /* left out if the stream has this section; "": never */
     void (*compute)(const double A[9], double *row);
 } invariants[] = {
-    {"stress", "stress.von_mises", 1, "unit=Pa", NULL, von_mises},
-    {"stress", "stress.principal", 3, "unit=Pa cols=1,2,3", NULL, principal_values},
+    {"stress", "stress.von_mises", 1, "unit=Pa", "", von_mises},
+    {"stress", "stress.principal", 3, "unit=Pa cols=1,2,3", "", principal_values},
     {"stress", "pressure", 1, "unit=Pa", "pressure", mean_pressure},
-    {"strain", "strain.principal", 3, "unit=1 cols=1,2,3", NULL, principal_values},
+    {"strain", "strain.principal", 3, "unit=1 cols=1,2,3", "", principal_values},
     {"strain", "J", 1, "unit=1", "volume_ratio", volume_ratio},
 };
-
-static bool has_section(const struct stream *stream, const char *name, const char *tail)
-{
-    char full[128];
-    snprintf(full, sizeof full, "%s%s", name, tail);
-    return stream_find(stream, full) != NULL;
-}
 
 /* Put fields into the stream, derived from the symmetric tensors stress and strain of a frame (X.frame.K
  * gives X.NAME.frame.K) or of the final state (FRAME_NONE), with the same rows:
@@ -106,8 +99,9 @@ static enum status add_invariants(struct stream *stream, int64_t frame, struct e
         for (size_t i = 0; i < sizeof invariants / sizeof *invariants; i++) {
             const struct invariant *what = &invariants[i];
             const char *tail = section->name + length;
+            snprintf(name, sizeof name, "%s%s", what->given, tail);
             if (!wanted || strlen(what->of) != length || strncmp(section->name, what->of, length) != 0 ||
-                (what->given != NULL && has_section(stream, what->given, tail))) {
+                stream_find(stream, name) != NULL) {
                 continue;
             }
             NEW_SCRATCH(double, values, section->rows *what->cols, error);
