@@ -78,9 +78,9 @@ limit_memory() { [[ $BUILD == *san* ]] || echo 'ulimit -v 4000000;'; }
 }
 
 @test "fault 7: physical group absent, empty or misspelt" {
-    refused "region absent" 2 "there are body" 'nodes -u mm -r bdoy square.msh'
+    refused "region absent" 2 "there are: body" 'nodes -u mm -r bdoy square.msh'
     mesh | sed 's/^2$/3/; s/^2 4 "body"/2 4 "body"\n2 5 "void"/' > void.msh
-    refused "region empty" 2 "there are body" 'nodes -u mm -r void void.msh'
+    refused "region empty" 2 "there are: body" 'nodes -u mm -r void void.msh'
     with 's/ymax/ymx/'
     refused "facets of a scene misspelt" 2 "no facet group 'ymx'; there are: xmin,xmax,ymin,ymax" 'mtled edited.scene table.mts'
     with 's/region = body/region = bdoy/'

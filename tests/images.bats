@@ -96,7 +96,6 @@ finds() {
         for unit in 3:1 4:1e3 5:1 6:1e-3; do
             lie "$(awk -v u="${unit#*:}" 'BEGIN { print 0, -2 * u, 0, 10 * u, 0, 0, 3 * u, 20 * u, -u, 0, 0, 30 * u }')"
             finds "${unit%:*}.nii"
-            grep -q 'sform and qform differ' said
             [ "$(grep -c 'no unit' said)" = $((${unit%:*} == 3)) ]
         done
     done
@@ -241,8 +240,8 @@ END
         text "$format" "$lines"
         sample -p <(echo 0 0 0) image 2>&1 > found | sed 's/^sample: image: //' | cmp - <(printf "${message:+$message\n}")
     done << 'END'
-nrrd|dimension: 3\nsizes: 2 2 2\nspace: LPS\nspace orign: (1,2,3)\nspace directions: (1,0,0) (0,1,0) (0,0,1)\nmin: 1\nmin: 1|has no space origin: the first voxel lies at 0; fields that are not known, left out: space orign
-mha|NDims = 3\nDimSize = 2 2 2\nElementSpacing = 1 1 1\nColor = 1 0 0 1\nOfset = 1 2 3\nElementSizes = 1 1 1|has no Offset: the first voxel lies at 0; fields that are not known, left out: Ofset, ElementSizes
+nrrd|dimension: 3\nsizes: 2 2 2\nspace: LPS\nspace orign: (1,2,3)\nspace directions: (1,0,0) (0,1,0) (0,0,1)\nmin: 1\nmin: 1|has no space origin: the first voxel lies at 0
+mha|NDims = 3\nDimSize = 2 2 2\nElementSpacing = 1 1 1\nColor = 1 0 0 1\nOfset = 1 2 3\nElementSizes = 1 1 1|has no Offset: the first voxel lies at 0
 mha|NDims = 3\nDimSize = 2 2 2\nElementSpacing = 1 1 1 9\nOffset = 0 0 0|
 END
 }
@@ -276,7 +275,7 @@ NRRD0005\nsizes: 2 1 2\n\n|stands in front of the number of dimensions
 @tdimension: 4\nsizes: 2 1 2 2\nkinds: domain domain domain domain\n\n1|dimension 4: 
 @t@skinds: domain list domain\n\n|dimension 2 holds the values
 @t@skinds: vector list domain\n\n|dimension 2: two or three
-@fdata file: data.raw\n\n|give its name, which ends in .nhdr or .mhd
+@fdata file: data.raw\n\n|its data, data.raw: No such file
 @fSegment0_Name:=LONG\n\n|a name of more than 127 bytes
 @fnonsense\n\n|'nonsense': no ':' behind a key
 @m|ends without ElementDataFile
@@ -287,7 +286,7 @@ NRRD0005\nsizes: 2 1 2\n\n|stands in front of the number of dimensions
 @mDimSize = 2 2 1\n@e|DimSize= 2 2 1: stands twice
 @mBinaryDataByteOrderMSB = True\nElementByteOrderMSB = False\n@e|contradict
 @mDistanceUnits = cm\n@e|one of these is read: mm
-@mCompressedData = perhaps\n@e|True or False
+@mCompressedData = perhaps\n@e|one of these is read
 @mElementNumberOfChannels = 0\n@e|from 1 to
 ObjectType = Mesh\n|one of these is read: Image
 NDims = 3\nElementDataFile = LOCAL\n1|no ElementType

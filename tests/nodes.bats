@@ -160,7 +160,7 @@ volumes() {
     grep -q "^# cells.region .* names=body$" bare.mts
     [ "$(grep '^# facets.set ' bare.mts | grep -o group_ | wc -l)" -eq 6 ]
     [ "$(nodes -u m -r body bare.msh 2> /dev/null | mts list | grep -c cells)" -eq 2 ]
-    refused 2 "no cells in a region 'skin': there are body" nodes -u m -r skin bare.msh
+    refused 2 "no region with cells 'skin'; there are: body" nodes -u m -r skin bare.msh
     # References of MEDIT, 0 among them.
     printf 'MeshVersionFormatted 2\nDimension 3\nVertices\n5\n0 0 0 1\n1 0 0 1\n0 1 0 1\n0 0 1 1\n0 0 -1 1\n' > two.mesh
     printf 'Tetrahedra\n2\n1 2 3 4 7\n1 3 2 5 0\nEnd\n' >> two.mesh
@@ -236,8 +236,7 @@ END
 @test "a mesh with a slit, whose faces have a name, is read as such" {
     gmsh -v 1 -2 -setnumber meshed 1 -setnumber h 4 "$top/pipelines/incision/slit.geo" -o "$PWD/whole.msh"
     gmsh -v 1 -setstring mesh "$PWD/whole.msh" -setstring cracked "$PWD/slit.msh" "$top/pipelines/incision/crack.geo" -parse_and_exit
-    nodes -u mm -t slit.msh > slit.mts 2> said
-    grep -qx "nodes: nodes at the same place, on named facets of one body: 4 pairs: it has a slit there" said
+    nodes -u mm -t slit.msh > slit.mts
     mts check slit.mts
     [ "$(mts print facets.set slit.mts | grep -c '^0$')" = 10 ]
 }

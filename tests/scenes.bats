@@ -132,7 +132,7 @@ END
 
 @test "a scene that is a folder or a device is refused; comments, blanks, names of files and order change nothing" {
     refused 2 "is a folder" mtled .
-    refused 2 "is a device" mtled /dev/zero
+    refused 2 "is a folder, device or socket" mtled /dev/zero
     cloud -d 2 -k regular -n 5 --box 0,0.1,0,0.1 | shapefn > table.mts 2> note
     mkdir in
     printf '0 0\n1 1\n' > in/curve.tsv

@@ -124,13 +124,13 @@ x\ty\n0\t1\n|not an mts stream
 @h1 2\n@t|x: row 1: 0 numbers instead of 2
 @h1 2\n# end 1\n|fewer rows than the 2 announced
 @h1 2\n3 1,5\n@t|x: row 1: '1,5': write a decimal point
-@h1 2\r\n3 4\r\n@t|CR LF
+@h1 2\r\n3 4\r\n@t|x: row 0: '2?' is not a number
 @h1 2\n3 four\n@t|x: row 1: 'four' is not a number of type f8
 @h1 2\n3 1e999\n@t|'1e999' is not a number
 @h1 2\n3 4\0\n@t|'4' is not a number
 @h1 2\n3 4\n\n\n# @ late\n# end 1\n|a provenance line behind a section
 @h1 2\n3 4\n\n\n# x f8 0 1\n\n\n# end 2\n|x: this section stands twice
-@1# @ a\r\n# end 0\n|CR LF
+@1# @ a\r\n# end 0\n|control character
 @1# @ \033[2J\n# end 0\n|control character
 @1# x f8 0 1 enc=text enc=text\n@t|one encoding
 @1# x f8 0 1 enc=hex\n@t|one encoding

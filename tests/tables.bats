@@ -33,7 +33,6 @@ setup() {
 0|# only a comment\n\n|holds no row of numbers
 2|1 2 3\n3\0 4 5\n|control character 0x00
 1|1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1\n|more than 64 columns
-1|1111111111111111111111111111111111111111111111111111111111111111111111111111111111111111111111111111 2\n|is not a finite number
 END
     refused 2 "is a folder" sample -p . image.nrrd
     refused 2 "none.tsv: No such file or directory" sample -p none.tsv image.nrrd

@@ -42,7 +42,7 @@ static const char usage[] =
     "  cloud -d 3 -k jittered -n 9,9,17 --box 0,0.1,0,0.1,0,0.2 --jitter 0.15 --seed 7 -o cloud.mts\n";
 
 #include "approx/points/cloud.h"
-#include "io/mesh/msh.h"
+#include "stages/views.h"
 #include "cell_report.h"
 #include "tool.h"
 
@@ -106,18 +106,23 @@ static enum status put_cloud(struct stream *stream, const struct cloud *cloud, i
                              struct error *error)
 {
     static char body[] = "body", plane[] = "xmin,xmax,ymin,ymax", space[] = "xmin,xmax,ymin,ymax,zmin,zmax";
-    struct mesh mesh = {.dim = cloud->dim,
-                        .node_count = cloud->node_count,
-                        .x = cloud->x,
-                        .cell_count = cloud->cell_count,
-                        .cells = cloud->cells,
-                        .cell_region = region,
-                        .facet_count = cloud->facet_count,
-                        .facets = cloud->facets,
-                        .facet_set = cloud->facet_set,
-                        .regions = {.count = 1, .list = body},
-                        .facet_sets = {.count = 2 * cloud->dim, .list = cloud->dim == 2 ? plane : space}};
-    return mesh_put(&mesh, stream, error);
+    const struct names regions = {.count = 1, .list = body},
+                       sides = {.count = 2 * cloud->dim, .list = cloud->dim == 2 ? plane : space};
+    char attributes[64];
+    int dim = cloud->dim;
+    RETURN_IF_ERROR(stream_put(stream, "nodes.x", TYPE_F8, cloud->node_count, dim,
+                               vector_attributes(dim, "m", attributes), cloud->x, false, error));
+    if (cloud->cell_count == 0) {
+        return STATUS_OK;
+    }
+    RETURN_IF_ERROR(
+        stream_put(stream, "cells", TYPE_I4, cloud->cell_count, dim + 1, "", cloud->cells, false, error));
+    RETURN_IF_ERROR(
+        stream_put_named(stream, "cells.region", TYPE_I4, cloud->cell_count, &regions, region, false, error));
+    RETURN_IF_ERROR(
+        stream_put(stream, "facets", TYPE_I4, cloud->facet_count, dim, "", cloud->facets, false, error));
+    return stream_put_named(stream, "facets.set", TYPE_I4, cloud->facet_count, &sides, cloud->facet_set,
+                            false, error);
 }
 
 int main(int argc, char *argv[])

@@ -81,7 +81,7 @@ static int print(struct tool *tool)
     if (section == NULL) {
         tool_fail(tool, STATUS_INPUT, "no section %s: see mts list", name);
     }
-    TOOL_TRY(tool, fail_in(&error, stream_write_rows(section, stdout, &error), "standard output"));
+    stream_write_rows(section, stdout);
     return tool_end(tool);
 }
 
@@ -150,7 +150,7 @@ static int check(struct tool *tool)
 static int recover(struct tool *tool)
 {
     FREED_BY(stream_free) struct stream stream = {0};
-    struct error why, error;
+    struct error why = {""}, error;
     const char *name;
     FREED_BY(descriptor_close) int descriptor = tool_open(tool, tool->operands[1], &name);
     tool_check(tool, stream_recover(&stream, descriptor, name, &why, &error), &error);

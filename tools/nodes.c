@@ -55,6 +55,7 @@ static const char usage[] =
 #include "cell_report.h"
 #include "io/files/textfile.h"
 #include "io/mesh/msh.h"
+#include "stages/views.h"
 #include "tool.h"
 
 #include "base/box.h"
@@ -70,41 +71,39 @@ static void list_groups(const struct msh *msh)
     }
 }
 
-static void report(const struct tool *tool, const struct mesh *mesh, bool verbose)
+static void report(const struct tool *tool, const struct cells *cells, bool verbose)
 {
-    struct box box = box_of(mesh->dim, mesh->node_count, mesh->x);
+    struct box box = box_of(cells->dim, cells->node_count, cells->x);
     double diagonal = box_diagonal(&box);
-    struct cells cells = {mesh->dim, mesh->node_count, mesh->x, mesh->cell_count, mesh->cells};
     struct cell_report cell_report;
     char text[128];
     if (diagonal > CELL_REPORT_LARGEST || diagonal < CELL_REPORT_SMALLEST) {
         tool_note(tool, "the body is %.3g m across: is the unit of -u right?", diagonal);
     }
-    tool_note_thin(tool, &cells);
+    tool_note_thin(tool, cells);
     if (!verbose) {
         return;
     }
-    TOOL_TRY(tool, cell_report_make(&cells, INFINITY, &cell_report, &error));
-    tool_note(tool, "%jd nodes, %jd cells, box %s, %s %.4g %s, %d connected bod%s", mesh->node_count,
-              mesh->cell_count, box_text(&box, text), mesh->dim == 2 ? "area" : "volume", cell_report.volume,
-              mesh->dim == 2 ? "m2" : "m3", cell_report.bodies, cell_report.bodies == 1 ? "y" : "ies");
+    TOOL_TRY(tool, cell_report_make(cells, INFINITY, &cell_report, &error));
+    tool_note(tool, "%jd nodes, %jd cells, box %s, %s %.4g %s, %d connected bod%s", cells->node_count,
+              cells->count, box_text(&box, text), cells->dim == 2 ? "area" : "volume", cell_report.volume,
+              cells->dim == 2 ? "m2" : "m3", cell_report.bodies, cell_report.bodies == 1 ? "y" : "ies");
     tool_note(tool, "quality of the cells: least %.2g, median %.2g", cell_report.least_median[0],
               cell_report.least_median[1]);
     for (int i = 0; i < cell_report.listed && i < 3; i++) {
         tool_note(tool, "cell %jd: %s", cell_report.poorest[i].item,
-                  cell_report_describe(&cells, &cell_report.poorest[i], text));
+                  cell_report_describe(cells, &cell_report.poorest[i], text));
     }
 }
 
 /* Cells of one body that part at nodes which hang on their facets are an error; different bodies may touch,
  * and faces of slits that have names, not numbers of entities. */
-static void check_joined(const struct tool *tool, const struct mesh *mesh, bool by_entity)
+static void check_joined(const struct tool *tool, const struct cells *cells, const struct section *facets)
 {
-    struct cells cells = {mesh->dim, mesh->node_count, mesh->x, mesh->cell_count, mesh->cells};
     bool parts;
     char said[512];
-    TOOL_TRY(tool, cell_report_hanging(&cells, by_entity ? 0 : mesh->facet_count, mesh->facets, &parts, said,
-                                       &error));
+    TOOL_TRY(tool, cell_report_hanging(cells, facets != NULL ? facets->rows : 0,
+                                       facets != NULL ? facets->data : NULL, &parts, said, &error));
     if (parts) {
         tool_fail(tool, STATUS_INPUT, "%s", said);
     }
@@ -113,7 +112,7 @@ static void check_joined(const struct tool *tool, const struct mesh *mesh, bool 
     }
 }
 
-static struct mesh_options parse(const struct tool *tool)
+static void check_options(const struct tool *tool)
 {
     static const char *const of_stream[] = {"unit", "regions", "verbose", "text", "output", NULL};
     if (tool_given(tool, "list") && tool_first_given(tool, of_stream) != NULL) {
@@ -123,38 +122,35 @@ static struct mesh_options parse(const struct tool *tool)
         tool_fail(tool, STATUS_INPUT,
                   "the unit of the mesh is missing: give -u m, cm, mm or um, or a number");
     }
-    return (struct mesh_options){.unit = tool_length_unit(tool, "unit", 1.0),
-                                 .regions = tool_value(tool, "regions")};
 }
 
 int main(int argc, char *argv[])
 {
     struct tool tool;
-    struct msh msh;
+    FREED_BY(msh_free) struct msh msh = {0};
     const char *name;
-    FREED_BY(mesh_free) struct mesh mesh = {0};
+    struct cells cells;
     FREED_BY(stream_free) struct stream stream = {0};
     tool_begin(&tool, usage, 0, 1, argc, argv);
-    struct mesh_options wanted = parse(&tool);
+    check_options(&tool);
+    double unit = tool_length_unit(&tool, "unit", 1.0);
     FREED_BY(descriptor_close) int descriptor = tool_open(&tool, tool.operands[0], &name);
     TOOL_TRY(&tool, msh_read(&msh, descriptor, name, tool_value(&tool, "regions-of"), &error));
     if (tool_given(&tool, "list")) {
         list_groups(&msh);
-        msh_free(&msh);
         return tool_end(&tool);
     }
-    TOOL_TRY(&tool, mesh_build(&mesh, &msh, &wanted, &error));
-    bool by_entity = msh.by_entity[mesh.dim - 1];
-    msh_free(&msh);
-    check_joined(&tool, &mesh, by_entity);
-    for (int64_t i = 0; i < mesh.notes.count; i++) {
-        tool_note(&tool, "%s", mesh.notes.name[i]);
+    TOOL_TRY(&tool, mesh_build(&msh, unit, tool_value(&tool, "regions"), &stream, &error));
+    TOOL_TRY(&tool, stream_cells(&stream, true, &cells, &error));
+    const struct section *facets = stream_find(&stream, "facets");
+    check_joined(&tool, &cells, msh.by_entity[cells.dim - 1] ? NULL : facets);
+    for (int64_t i = 0; i < msh.notes.count; i++) {
+        tool_note(&tool, "%s", msh.notes.name[i]);
     }
-    if (mesh.facet_sets.count == 0) {
+    if (facets == NULL) {
         tool_note(&tool, "no part of the boundary has a name: the program tag makes names");
     }
-    report(&tool, &mesh, tool_given(&tool, "verbose"));
-    TOOL_TRY(&tool, mesh_put(&mesh, &stream, &error));
+    report(&tool, &cells, tool_given(&tool, "verbose"));
     tool_write(&tool, &stream);
     return tool_end(&tool);
 }

@@ -60,7 +60,6 @@ static const char usage[] =
 #include "points.h"
 #include "stage_options.h"
 #include "output.h"
-#include "images/tissue.h"
 #include "io/stream/sections.h"
 #include "stages/views.h"
 
@@ -83,9 +82,9 @@ struct sampled {
 /* The options. */
 struct request {
     enum image_method method;
-    const char *at, *region, *points, *section; /* NULL: not given */
+    const char *at, *section; /* section: NULL: none is written */
     double unit, outside;
-    bool has_outside, stiffness, axes;
+    bool stiffness, axes;
     struct tissue tissue;
     int image_count;
 };
@@ -101,12 +100,9 @@ static void parse(const struct tool *tool, struct request *request)
     }
     *request = (struct request){.method = tool_image_method(tool),
                                 .at = tool_value(tool, "at"),
-                                .region = tool_value(tool, "region"),
-                                .points = tool_value(tool, "points"),
                                 .section = tool_value(tool, "section"),
                                 .unit = tool_length_unit(tool, "unit", 1),
                                 .outside = tool_number(tool, "outside", -DBL_MAX, DBL_MAX, 0),
-                                .has_outside = tool_given(tool, "outside"),
                                 .stiffness = tool_given(tool, "material") || tissue_count > 0,
                                 .axes = tool_given(tool, "vector"),
                                 .image_count = tissue_count > 0 ? tissue_count : 1};
@@ -116,7 +112,7 @@ static void parse(const struct tool *tool, struct request *request)
     for (size_t e = 0; e < sizeof exclusive / sizeof *exclusive; e++) {
         tool_excludes(tool, exclusive[e][0], exclusive[e][1]);
     }
-    if (request->axes && request->points == NULL && request->section == NULL) {
+    if (request->axes && !tool_given(tool, "points") && request->section == NULL) {
         request->section = "points.fibre";
     }
     if (request->section != NULL && strcmp(request->section, "points.fibre") != 0 &&
@@ -134,9 +130,10 @@ static void parse(const struct tool *tool, struct request *request)
         tool_fail(tool, STATUS_INPUT, "-t is for streams: it needs --section (a table is text)");
     }
     if (request->at == NULL) {
-        request->at = request->stiffness || request->axes || request->region != NULL ? "points.x" : "nodes.x";
+        request->at =
+            request->stiffness || request->axes || tool_given(tool, "region") ? "points.x" : "nodes.x";
     }
-    if (request->region != NULL && strcmp(request->at, "points.x") != 0) {
+    if (tool_given(tool, "region") && strcmp(request->at, "points.x") != 0) {
         tool_fail(tool, STATUS_INPUT, "--region is for integration points (points.x), not for %s",
                   request->at);
     }
@@ -203,7 +200,7 @@ static void sample_image(const struct tool *tool, const struct request *request,
     if (outside == 0) {
         return;
     }
-    if (!request->has_outside) {
+    if (!tool_given(tool, "outside")) {
         tool_fail(tool, STATUS_INPUT,
                   "%s: row %jd at %s m, one of %jd of %jd: outside of %s, or not finite there: is the "
                   "unit right? "
@@ -345,15 +342,15 @@ int main(int argc, char *argv[])
     char attributes[64];
     tool_begin(&tool, usage, 1, OPTIONS_MOST_USES + 1, argc, argv);
     parse(&tool, &request);
-    int most = request.image_count + (request.points == NULL ? 1 : 0);
+    const char *points = tool_value(&tool, "points");
+    int most = request.image_count + (points == NULL ? 1 : 0);
     if (tool.operand_count < request.image_count || tool.operand_count > most) {
         tool_fail(&tool, STATUS_INPUT, "%d operands: %d image%s%s (see -h)", tool.operand_count,
                   request.image_count, request.image_count > 1 ? "s, one for each --tissue," : "",
-                  request.points == NULL ? " and a stream, if not on standard input, are expected"
-                                         : " expected");
+                  points == NULL ? " and a stream, if not on standard input, are expected" : " expected");
     }
-    if (request.points != NULL) {
-        points_of_table(&tool, request.points, 0, &rows.points);
+    if (points != NULL) {
+        points_of_table(&tool, points, 0, &rows.points);
     } else {
         tool_read(&tool, tool.operands[request.image_count], &stream);
         if (strcmp(request.at, "points.x") == 0) {
@@ -362,8 +359,8 @@ int main(int argc, char *argv[])
         points_of_section(&tool, &stream, request.at, &rows.points);
         rows.box = box_of(rows.points.dim, rows.points.count, rows.points.x);
     }
-    if (request.region != NULL) {
-        points_in_regions(&tool, &stream, request.region, &rows.points);
+    if (tool_given(&tool, "region")) {
+        points_in_regions(&tool, &stream, tool_value(&tool, "region"), &rows.points);
     }
     sample_images(&tool, &request, &rows);
     if (request.stiffness) {

@@ -6,7 +6,7 @@ static const char usage[] =
     "Reads a stream with nodes.x and cells (see nodes, voxels, cloud) and writes the mesh with its\n"
     "groups, so that other programs can compute the same case, and nodes reads the same body again.\n"
     "The ending of the name says what is written:\n"
-    "  .msh  gmsh, MSH 4.1 as text: regions, groups of facets and node sets are physical groups\n"
+    "  .msh  gmsh, MSH 2.2 as text: regions, groups of facets and node sets are physical groups\n"
     "        with their names\n"
     "  .inp  Abaqus and CalculiX: *NODE, *ELEMENT of type C3D4 (2D: CPE3) with an element set for\n"
     "        each region, *NSET for each node set, *SURFACE of element faces for each group of\n"
@@ -72,88 +72,50 @@ struct mesh_part {
     const struct names *names;
 };
 
-static void print_names(FILE *file, const struct mesh_part kind[3])
+static void print_elements(FILE *file, const struct mesh_part *part, int64_t *tag)
 {
-    int64_t count = 0;
-    for (int k = 0; k < 3; k++) {
-        count += kind[k].names->count;
-    }
-    fprintf(file, "$PhysicalNames\n%" PRId64 "\n", count);
-    for (int k = 0; k < 3; k++) {
-        for (int32_t g = 0; g < kind[k].names->count; g++) {
-            fprintf(file, "%d %d \"%s\"\n", kind[k].dim, g + 1, kind[k].names->name[g]);
+    for (int64_t e = 0; e < part->count; e++) {
+        int group = part->group[e] + 1;
+        fprintf(file, "%" PRId64 " %d 2 %d %d", ++*tag, part->type, group, group);
+        for (int c = 0; c < part->corners; c++) {
+            fprintf(file, " %d", part->element[e * part->corners + c] + 1);
         }
+        fputc('\n', file);
     }
-    fprintf(file, "$EndPhysicalNames\n");
 }
 
-/* Those of the lowest dimension come first. Their boxes, which readers do not use, are zeros. */
-static void print_entities(FILE *file, const struct mesh_part kind[3])
-{
-    int64_t count[4] = {0};
-    for (int k = 0; k < 3; k++) {
-        count[kind[k].dim] = kind[k].names->count;
-    }
-    fprintf(file, "$Entities\n%" PRId64 " %" PRId64 " %" PRId64 " %" PRId64 "\n", count[0], count[1],
-            count[2], count[3]);
-    for (int k = 2; k >= 0; k--) {
-        for (int32_t g = 0; g < kind[k].names->count; g++) {
-            fprintf(file, kind[k].dim == 0 ? "%d 0 0 0 1 %d\n" : "%d 0 0 0 0 0 0 1 %d 0\n", g + 1, g + 1);
-        }
-    }
-    fprintf(file, "$EndEntities\n");
-}
-
-static void print_elements(FILE *file, const struct mesh_part kind[3])
-{
-    int64_t blocks = 0, elements = 0, tag = 0;
-    for (int k = 0; k < 3; k++) {
-        elements += kind[k].count;
-        for (int64_t e = 0; e < kind[k].count; e = run_end(kind[k].count, kind[k].group, e)) {
-            blocks++;
-        }
-    }
-    fprintf(file, "$Elements\n%" PRId64 " %" PRId64 " %d %" PRId64 "\n", blocks, elements, elements > 0,
-            elements);
-    for (int k = 2; k >= 0; k--) {
-        for (int64_t e = 0; e < kind[k].count;) {
-            int64_t end = run_end(kind[k].count, kind[k].group, e);
-            fprintf(file, "%d %d %d %" PRId64 "\n", kind[k].dim, kind[k].group[e] + 1, kind[k].type, end - e);
-            for (; e < end; e++) {
-                fprintf(file, "%" PRId64, ++tag);
-                for (int c = 0; c < kind[k].corners; c++) {
-                    fprintf(file, " %d", kind[k].element[e * kind[k].corners + c] + 1);
-                }
-                fputc('\n', file);
-            }
-        }
-    }
-    fprintf(file, "$EndElements\n");
-}
-
+/* The elements of the lowest dimension come first. */
 static void write_msh(FILE *file, const struct body *body, double unit)
 {
     const struct cells *cells = &body->cells;
-    const struct groups *sets = &body->sets;
+    const struct groups *sets = &body->sets, *facets = &body->facets;
     int dim = cells->dim;
-    int64_t nodes = cells->node_count;
-    const struct mesh_part kind[3] = {{dim, dim == 3 ? 4 : 2, dim + 1, cells->count, cells->node,
-                                       body->regions.group, &body->regions.names},
-                                      {dim - 1, dim == 3 ? 2 : 1, dim, body->facets.count, body->facets.node,
-                                       body->facets.group, &body->facets.names},
-                                      {0, 15, 1, sets->count, sets->node, sets->group, &sets->names}};
-    fprintf(file, "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n");
-    print_names(file, kind);
-    print_entities(file, kind);
-    fprintf(file, "$Nodes\n1 %" PRId64 " 1 %" PRId64 "\n%d 1 0 %" PRId64 "\n", nodes, nodes, dim, nodes);
-    for (int64_t n = 0; n < nodes; n++) {
-        fprintf(file, "%" PRId64 "\n", n + 1);
+    int64_t names = 0, elements = 0, tag = 0;
+    const struct mesh_part part[3] = {
+        {0, 15, 1, sets->count, sets->node, sets->group, &sets->names},
+        {dim - 1, dim == 3 ? 2 : 1, dim, facets->count, facets->node, facets->group, &facets->names},
+        {dim, dim == 3 ? 4 : 2, dim + 1, cells->count, cells->node, body->regions.group,
+         &body->regions.names}};
+    for (int k = 0; k < 3; k++) {
+        names += part[k].names->count;
+        elements += part[k].count;
     }
-    for (int64_t n = 0; n < nodes; n++) {
+    fprintf(file, "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n%" PRId64 "\n", names);
+    for (int k = 0; k < 3; k++) {
+        for (int32_t g = 0; g < part[k].names->count; g++) {
+            fprintf(file, "%d %d \"%s\"\n", part[k].dim, g + 1, part[k].names->name[g]);
+        }
+    }
+    fprintf(file, "$EndPhysicalNames\n$Nodes\n%" PRId64 "\n", cells->node_count);
+    for (int64_t n = 0; n < cells->node_count; n++) {
+        fprintf(file, "%" PRId64 " ", n + 1);
         print_place(file, cells, n, unit, " ");
     }
-    fprintf(file, "$EndNodes\n");
-    print_elements(file, kind);
+    fprintf(file, "$EndNodes\n$Elements\n%" PRId64 "\n", elements);
+    for (int k = 0; k < 3; k++) {
+        print_elements(file, &part[k], &tag);
+    }
+    fprintf(file, "$EndElements\n");
 }
 
 /* ---- decks of Abaqus and CalculiX ---- */

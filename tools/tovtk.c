@@ -52,7 +52,7 @@ static void write_vtu(const struct tool *tool, struct plot *plot, int64_t frame,
     struct output output;
     TOOL_TRY(tool, plot_choose(plot, frame, &error));
     TOOL_TRY(tool, output_open(&output, name, false, &error));
-    vtu_write(output.file, &plot->mesh, plot->field_count, plot->fields, tool->text);
+    vtu_write(output.file, plot, tool->text);
     TOOL_TRY(tool, output_end(&output, STATUS_OK, &error));
 }
 

@@ -1,8 +1,8 @@
 static const char usage[] =
     "warp - move an image by a displacement field, or write the field as an image\n"
     "\n"
-    "usage: warp [-i METHOD] [--like GRID] [--fill VALUES] [--vacated VALUES] [--inverse] [--frame K] [-v]\n"
-    "            [-o FILE] IMAGE [FILE]\n"
+    "usage: warp [-i METHOD] [--like GRID] [--fill V] [--vacated V] [--inverse] [--frame K] [-v] [-o FILE]\n"
+    "            IMAGE [FILE]\n"
     "       warp --field [--inverse] [--frame K] [-v] [-o FILE] GRID [FILE]\n"
     "\n"
     "Reads an image (NIfTI, NRRD or MetaImage; -: standard input) and a stream with nodes.x (m), cells\n"
@@ -35,10 +35,8 @@ static const char usage[] =
     "  -i, --interpolation METHOD\n"
     "                     nearest (for labels), linear (default) or cubic (Keys 1981)\n"
     "      --like GRID    write on the grid of this image, not that of IMAGE\n"
-    "      --fill VALUES  the value of all voxels outside of the moved body, V, or by their label in IMAGE,\n"
-    "                     LABEL=V,...; a V in this list is for all other labels\n"
-    "      --vacated VALUES  the same for voxels where the body was and is no more; labels without a value\n"
-    "                     have that of --fill\n"
+    "      --fill V       the value of all voxels outside of the moved body\n"
+    "      --vacated V    the value of voxels where the body was and is no more; without it that of --fill\n"
     "      --field        write the displacement field\n"
     "      --inverse      the other way: at X the value of IMAGE, which shows the moved body, at X + u(X)\n"
     "      --frame K      take u.frame.K in place of u\n"
@@ -48,15 +46,14 @@ static const char usage[] =
     "Examples:\n"
     "  warp -i linear T1.nii.gz u.dat > predicted.nii.gz\n"
     "  warp -i nearest --vacated 0 -o moved.nii.gz labels.nii.gz u.dat\n"
-    "  warp -i nearest --vacated 1=2 --fill 3=0 labels.nii.gz u.dat > resected.nii.gz\n"
     "  warp --field -o field.nrrd T1.nrrd u.dat\n"
     "  plastimatch warp --input T1.nrrd --xf field.nrrd --output-img predicted.nrrd\n";
 
 #include "comparison.h"
 #include "images/images.h"
-#include "warp/warp_voxels.h"
 
 #include "approx/field/motion.h"
+#include "base/vector.h"
 
 #include <float.h>
 #include <math.h>
@@ -64,69 +61,128 @@ static const char usage[] =
 
 static const double tolerance = 1e-4; /* of positions, in voxels */
 
-/* Parse "V" or "LABEL=V,..." of an option. */
-static void parse_values(const struct tool *tool, const char *option, struct warp_values *values)
+/* ---- the loop over the voxels of a moved image, or of the field as an image ---- */
+
+/* The outcome: numbers of voxels, and largest values. */
+struct warp_report {
+    int64_t moved, vacated, beyond; /* in the moved body; uncovered; with a place outside of the image */
+    int64_t left;                   /* uncovered, with their old value */
+    int64_t doubly, inexact;        /* in two cells; whose place was not found */
+    double farthest;                /* displacement, m */
+    double inconsistency;           /* |place(X) - x|, m */
+};
+
+/* The input of the loop over voxels. */
+struct warp_job {
+    enum image_method method;
+    bool inverse;
+    double fill, vacated;       /* values outside of the moved body, and where it has been; NAN: not given */
+    const struct image *source; /* NULL: the field is written */
+    double source_voxel[3][4];
+    const struct motion *motion;
+    const int32_t *owner,
+        *other;       /* cell of each voxel in the state of the result; and in the other state, or NULL */
+    double tolerance; /* m */
+    const struct image_axes *axes;
+    struct image *result;
+};
+
+/* place[]: the position in the other state that corresponds to x; outside of the body x itself. */
+static void find_place(const struct warp_job *job, int64_t v, const double x[3], double place[3],
+                       struct warp_report *report)
 {
-    char what[16];
-    snprintf(what, sizeof what, "--%s", option);
-    const char *text = tool_given(tool, option) ? tool_value(tool, option) : NULL;
-    SCRATCH char *copy = text != NULL ? tool_memory(tool, strdup(text)) : NULL;
-    for (char *rest = copy; rest != NULL;) {
-        char *item = strsep(&rest, ","), *equals = strchr(item, '=');
-        int64_t label = 0;
-        double value;
-        if (equals != NULL) {
-            *equals = '\0';
-            TOOL_TRY(tool, parse_integer(item, what, 0, INT32_MAX, &label, &error));
+    int dim = job->motion->cells.dim;
+    double residual = 0;
+    memcpy(place, x, 3 * sizeof *x);
+    if (job->owner[v] < 0) {
+        return;
+    }
+    if (job->inverse) {
+        motion_place(job->motion, job->owner[v], x, place);
+    } else if (!motion_inverse(job->motion, job->owner[v], x, job->tolerance, place, &residual)) {
+        report->inexact++;
+    }
+    report->moved++;
+    report->farthest = fmax(report->farthest, vector_distance(dim, place, x));
+    report->inconsistency = fmax(report->inconsistency, residual);
+}
+
+/* Set the value of the moved image at voxel v, that of the source at `place`. */
+static void put_value(const struct warp_job *job, int64_t v, const double place[3],
+                      struct warp_report *report)
+{
+    size_t components = job->result->components;
+    double voxel[3], *value = job->result->values + (size_t)v * components;
+    bool outside = job->owner[v] < 0, vacated = outside && job->other[v] >= 0;
+    double given = !outside ? NAN : vacated && !isnan(job->vacated) ? job->vacated : job->fill;
+    report->vacated += vacated;
+    report->left += vacated && isnan(given);
+    image_map(&job->source_voxel[0][0], place, voxel);
+    if (isnan(given) && image_sample(job->source, job->method, voxel, value)) {
+        return;
+    }
+    report->beyond += isnan(given);
+    for (size_t c = 0; c < components; c++) {
+        value[c] = !isnan(given) ? given : isnan(job->fill) ? 0 : job->fill;
+    }
+}
+
+static void do_row(const struct warp_job *job, int64_t row, struct warp_report *report)
+{
+    struct image *result = job->result;
+    int64_t width = (int64_t)result->size[0], height = (int64_t)result->size[1];
+    int64_t j = row % height, k = row / height;
+    for (int64_t i = 0; i < width; i++) {
+        int64_t v = row * width + i;
+        const double voxel[3] = {(double)i, (double)j, (double)k};
+        double x[3], place[3];
+        image_world(result, voxel, x);
+        find_place(job, v, x, place, report);
+        if (job->source != NULL) {
+            put_value(job, v, place, report);
+            continue;
         }
-        TOOL_TRY(tool,
-                 parse_double(equals != NULL ? equals + 1 : item, what, -DBL_MAX, DBL_MAX, &value, &error));
-        bool repeated = equals == NULL && values->others;
-        for (int i = 0; i < values->count && equals != NULL; i++) {
-            repeated = repeated || values->label[i] == (double)label;
-        }
-        if (repeated) {
-            tool_fail(tool, STATUS_INPUT, "%s %s: two values for %s", what, text,
-                      equals != NULL ? item : "all other labels");
-        }
-        if (equals == NULL) {
-            values->others = true;
-            values->other = value;
-        } else if (values->count == WARP_MOST_LABELS) {
-            tool_fail(tool, STATUS_INPUT, "%s: more than %d labels", what, WARP_MOST_LABELS);
-        } else {
-            values->label[values->count] = (double)label;
-            values->value[values->count++] = value;
+        for (int c = 0; c < 3; c++) { /* to ITK's axes and unit */
+            int axis = job->axes->world[c];
+            result->values[3 * v + axis] = (axis < 2 ? -1e3 : 1e3) * (place[c] - x[c]);
         }
     }
 }
 
-static void parse(const struct tool *tool, struct warp_request *request)
+/* Find the value of each voxel of the result, and add to the report. */
+static void warp_voxels(const struct warp_job *job, struct warp_report *report)
+{
+    int64_t rows = (int64_t)(job->result->size[1] * job->result->size[2]);
+#pragma omp parallel for schedule(dynamic, 16)
+    for (int64_t row = 0; row < rows; row++) {
+        struct warp_report own = {0};
+        do_row(job, row, &own);
+#pragma omp critical
+        {
+            report->moved += own.moved, report->vacated += own.vacated, report->left += own.left;
+            report->beyond += own.beyond, report->inexact += own.inexact;
+            report->farthest = fmax(report->farthest, own.farthest);
+            report->inconsistency = fmax(report->inconsistency, own.inconsistency);
+        }
+    }
+}
+
+/* ---- what is read and told ---- */
+
+static void check_options(const struct tool *tool)
 {
     static const char *const of_images[] = {"interpolation", "like", "fill", "vacated", NULL};
     const char *of_image = tool_first_given(tool, of_images);
-    *request = (struct warp_request){.method = tool_image_method(tool),
-                                     .field = tool_given(tool, "field"),
-                                     .inverse = tool_given(tool, "inverse"),
-                                     .verbose = tool_given(tool, "verbose"),
-                                     .section = "u"};
-    parse_values(tool, "fill", &request->fill);
-    parse_values(tool, "vacated", &request->vacated);
-    if (request->field && of_image != NULL) {
+    if (tool_given(tool, "field") && of_image != NULL) {
         tool_fail(tool, STATUS_INPUT, "--%s is for images, not for --field", of_image);
-    }
-    if (tool_given(tool, "frame")) {
-        snprintf(request->section, sizeof request->section, "u.frame.%jd",
-                 tool_integer(tool, "frame", 0, INT32_MAX, 0));
     }
     tool_check_image_output(tool);
 }
 
-static void print_report(const struct tool *tool, const struct warp_request *request,
-                         const struct motion *motion, const struct image *grid,
+static void print_report(const struct tool *tool, const struct warp_job *job, const struct image *grid,
                          const struct warp_report *report)
 {
-    char text[128];
+    const struct motion *motion = job->motion;
     int dim = motion->cells.dim;
     int64_t first = 0, folded = motion_folded(motion, &first);
     if (folded > 0) {
@@ -138,19 +194,20 @@ static void print_report(const struct tool *tool, const struct warp_request *req
     }
     if (report->beyond > 0) {
         tool_note(tool, "%jd voxels show places outside of the image: %s there", report->beyond,
-                  request->fill.others ? "the value of --fill" : "0");
+                  tool_given(tool, "fill") ? "the value of --fill" : "0");
     }
     if (report->left > 0) {
         tool_note(tool, "%jd voxels that the body left keep their old value: see --vacated", report->left);
     }
-    if (!request->verbose) {
+    if (!tool_given(tool, "verbose")) {
         return;
     }
-    tool_note(tool, "%s", image_text(grid, text));
+    tool_note(tool, "%zu x %zu x %zu voxels of %.4g x %.4g x %.4g mm", grid->size[0], grid->size[1],
+              grid->size[2], 1e3 * image_step(grid, 0), 1e3 * image_step(grid, 1), 1e3 * image_step(grid, 2));
     tool_note(tool,
               dim == 3 ? "%jd voxels in the %sbody, %.6g ml; displacement at most %.4g mm"
                        : "%jd voxels in the %sbody, %.6g cm2; displacement at most %.4g mm",
-              report->moved, request->inverse ? "" : "moved ",
+              report->moved, job->inverse ? "" : "moved ",
               (dim == 3 ? 1e6 : 1e4) * (double)report->moved * voxel_volume(grid, dim),
               1e3 * report->farthest);
     if (report->doubly > 0) {
@@ -159,7 +216,7 @@ static void print_report(const struct tool *tool, const struct warp_request *req
     if (tool_given(tool, "vacated")) {
         tool_note(tool, "%jd voxels were left by the body", report->vacated);
     }
-    if (!request->inverse) {
+    if (!job->inverse) {
         tool_note(tool,
                   "inverse map: largest residual %.2g voxels; Newton did not converge to %.0e in %jd voxels, "
                   "where the linear inverse of the cell is taken",
@@ -167,47 +224,25 @@ static void print_report(const struct tool *tool, const struct warp_request *req
     }
 }
 
-static void check_value(const struct tool *tool, const struct image *image, const char *option, double value)
+/* The value of an option, which the image can have; NAN: not given. */
+static double given_value(const struct tool *tool, const char *option, const struct image *image)
 {
-    double least, most;
+    double least, most, value = tool_number(tool, option, -DBL_MAX, DBL_MAX, NAN);
     image_range(image, &least, &most);
-    if (!(value >= least && value <= most)) {
+    if (value < least || value > most) {
         tool_fail(tool, STATUS_INPUT, "--%s %g: values of %s are from %g to %g", option, value,
                   tool->operands[0], least, most);
     }
-}
-
-/* Exit for values that the image cannot have, and for labels that it has not. */
-static void check_values(const struct tool *tool, const struct image *image, const char *option,
-                         const struct warp_values *values)
-{
-    if (values->others) {
-        check_value(tool, image, option, values->other);
-    }
-    if (values->count > 0 && image->components > 1) {
-        tool_fail(tool, STATUS_INPUT, "--%s: %s has %zu values at each voxel, not labels", option,
-                  tool->operands[0], image->components);
-    }
-    for (int i = 0; i < values->count; i++) {
-        bool found = false;
-        check_value(tool, image, option, values->value[i]);
-        for (size_t v = 0; v < image_voxels(image) && !found; v++) {
-            found = image_whole(image, image->values[v]) == values->label[i];
-        }
-        if (!found) {
-            tool_fail(tool, STATUS_INPUT, "--%s: no voxel of %s has the label %.0f", option,
-                      tool->operands[0], values->label[i]);
-        }
-    }
+    return value;
 }
 
 /* Make the result, all zero: an image like the source on the grid of another one, or the field there. */
-static void new_result(const struct tool *tool, const struct warp_request *request, struct image *source,
-                       const struct image *grid, struct image *result)
+static void new_result(const struct tool *tool, bool field, struct image *source, const struct image *grid,
+                       struct image *result)
 {
-    TOOL_TRY(tool, image_new(result, grid->size, request->field ? 3 : source->components, &error));
+    TOOL_TRY(tool, image_new(result, grid->size, field ? 3 : source->components, &error));
     double *values = result->values;
-    if (!request->field) {
+    if (!field) {
         *result = *source;
         result->values = values;
         source->segment_count = 0; /* the result has them */
@@ -215,25 +250,13 @@ static void new_result(const struct tool *tool, const struct warp_request *reque
         result->unit = grid->unit;
     } else { /* the vectors are in mm, and ITK reads mm */
         snprintf(result->description, sizeof result->description, "displacement, mm, LPS, from %s",
-                 request->inverse ? "reference to moved" : "result to image");
+                 tool_given(tool, "inverse") ? "reference to moved" : "result to image");
         result->format = grid->format;
     }
     memcpy(result->size, grid->size, sizeof result->size);
     memcpy(result->to_world, grid->to_world, sizeof result->to_world);
     result->space = grid->space;
     result->version = grid->version;
-}
-
-static void note_not_finite(const struct tool *tool, const struct image *image, const char *name)
-{
-    size_t count = 0;
-    for (size_t i = 0; i < image_voxels(image) * image->components; i++) {
-        count += isfinite(image->values[i]) ? 0 : 1;
-    }
-    if (count > 0) {
-        tool_note(tool, "%s: %zu values are not finite: neither is what is interpolated beside them", name,
-                  count);
-    }
 }
 
 /* Build the motion, with gradients of the field that mtled computed, if the stream has it. */
@@ -281,45 +304,48 @@ int main(int argc, char *argv[])
 {
     struct tool tool;
     struct side side;
-    struct warp_request request;
     struct warp_report report = {0};
     FREED_BY(image_free) struct image image = {0}, like = {0}, result = {0};
     FREED_BY(motion_free) struct motion motion = {0};
     struct image_axes axes; /* of the grid */
+    char section[32] = "u";
+    int64_t ignored;
     tool_begin(&tool, usage, 1, 2, argc, argv);
-    parse(&tool, &request);
+    struct warp_job job = {.method = tool_image_method(&tool), .inverse = tool_given(&tool, "inverse")};
+    bool field = tool_given(&tool, "field");
+    check_options(&tool);
+    if (tool_given(&tool, "frame")) {
+        snprintf(section, sizeof section, "u.frame.%jd", tool_integer(&tool, "frame", 0, INT32_MAX, 0));
+    }
     tool_read_image(&tool, tool.operands[0], &image);
-    check_values(&tool, &image, "fill", &request.fill);
-    check_values(&tool, &image, "vacated", &request.vacated);
+    job.fill = given_value(&tool, "fill", &image);
+    job.vacated = given_value(&tool, "vacated", &image);
     if (tool_given(&tool, "like")) {
         tool_read_image(&tool, tool_value(&tool, "like"), &like);
     }
-    side_read_displacement(&tool, tool.operands[1], request.section, 0, &side);
+    side_read_displacement(&tool, tool.operands[1], section, 0, &side);
     const struct cells cells = side.field.cells;
     turn_images(&tool, cells.dim, &image, &like, &axes);
     build_motion(&tool, &side.field, &motion);
     const struct image *grid = tool_given(&tool, "like") ? &like : &image;
-    const double *seen = request.inverse ? cells.x : motion.moved;
-    const double *unseen = request.inverse ? motion.moved : cells.x;
-    int64_t ignored;
+    const double *seen = job.inverse ? cells.x : motion.moved;
+    const double *unseen = job.inverse ? motion.moved : cells.x;
     SCRATCH int32_t *owner = find_seen(&tool, grid, &cells, seen, &report.doubly), *other = NULL;
     note_image_outside(&tool, &image, &cells, unseen);
-    if (!request.field) {
+    if (!field) {
         other = find_owners(&tool, grid, &cells, unseen, &ignored);
-        note_not_finite(&tool, &image, tool.operands[0]);
+        job.source = &image;
     }
-    new_result(&tool, &request, &image, grid, &result);
-    struct warp_job job = {.request = &request,
-                           .source = request.field ? NULL : &image,
-                           .motion = &motion,
-                           .owner = owner,
-                           .other = other,
-                           .tolerance = tolerance * least_step(grid, cells.dim),
-                           .axes = &axes,
-                           .result = &result};
+    new_result(&tool, field, &image, grid, &result);
+    job.motion = &motion;
+    job.owner = owner;
+    job.other = other;
+    job.tolerance = tolerance * least_step(grid, cells.dim);
+    job.axes = &axes;
+    job.result = &result;
     image_to_voxel(&image, job.source_voxel);
     warp_voxels(&job, &report);
-    print_report(&tool, &request, &motion, grid, &report);
+    print_report(&tool, &job, grid, &report);
     image_from_body(&result, &axes);
     stream_free(&side.stream);
     tool_write_image(&tool, &result);

@@ -1,7 +1,7 @@
 /* The model as a whole, its groups, and the materials of regions and points. */
 #include "mtled/model.h"
 
-#include "images/tissue.h"
+#include "images/images.h"
 #include "process.h"
 
 #include "base/vector.h"

@@ -6,7 +6,6 @@
 #include "base/options.h"
 #include "base/vector.h"
 #include "io/stream/sections.h"
-#include "io/vtk/vtk.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -70,23 +69,24 @@ static const struct invariant {
     const char *of, *name; /* of section `of` and its frames */
     int cols;
     const char *attributes;
-    const char *given; /* left out if the stream has this section */
+    const char *given; /* left out if the stream has this section; "": never */
     void (*compute)(const double A[9], double *row);
 } invariants[] = {
-    {"stress", "stress.von_mises", 1, "unit=Pa", NULL, von_mises},
-    {"stress", "stress.principal", 3, "unit=Pa cols=1,2,3", NULL, principal_values},
+    {"stress", "stress.von_mises", 1, "unit=Pa", "", von_mises},
+    {"stress", "stress.principal", 3, "unit=Pa cols=1,2,3", "", principal_values},
     {"stress", "pressure", 1, "unit=Pa", "pressure", mean_pressure},
-    {"strain", "strain.principal", 3, "unit=1 cols=1,2,3", NULL, principal_values},
+    {"strain", "strain.principal", 3, "unit=1 cols=1,2,3", "", principal_values},
     {"strain", "J", 1, "unit=1", "volume_ratio", volume_ratio},
 };
 
-static bool has_section(const struct stream *stream, const char *name, const char *tail)
-{
-    char full[128];
-    snprintf(full, sizeof full, "%s%s", name, tail);
-    return stream_find(stream, full) != NULL;
-}
-
+/* Put fields into the stream, derived from the symmetric tensors stress and strain of a frame (X.frame.K
+ * gives X.NAME.frame.K) or of the final state (FRAME_NONE), with the same rows:
+ *
+ *   stress.von_mises   sqrt(3/2 s:s), s the deviator, Pa
+ *   stress.principal   the principal stresses, Pa, the largest first
+ *   pressure           -tr(stress)/3, Pa, unless the stream has it
+ *   strain.principal   the principal strains, the largest first
+ *   J                  sqrt det(1 + 2 strain), exactly det F, unless the stream has volume_ratio */
 static enum status add_invariants(struct stream *stream, int64_t frame, struct error *error)
 {
     char name[160];
@@ -99,8 +99,9 @@ static enum status add_invariants(struct stream *stream, int64_t frame, struct e
         for (size_t i = 0; i < sizeof invariants / sizeof *invariants; i++) {
             const struct invariant *what = &invariants[i];
             const char *tail = section->name + length;
+            snprintf(name, sizeof name, "%s%s", what->given, tail);
             if (!wanted || strlen(what->of) != length || strncmp(section->name, what->of, length) != 0 ||
-                (what->given != NULL && has_section(stream, what->given, tail))) {
+                stream_find(stream, name) != NULL) {
                 continue;
             }
             NEW_SCRATCH(double, values, section->rows *what->cols, error);
@@ -141,39 +142,11 @@ static enum status add_groups(struct stream *stream, const char *prefix, const s
     return STATUS_OK;
 }
 
-/* Put fields into the stream, derived from the symmetric tensors stress and strain of a frame (X.frame.K
- * gives X.NAME.frame.K) or of the final state (FRAME_NONE), with the same rows:
- *
- *   stress.von_mises   sqrt(3/2 s:s), s the deviator, Pa
- *   stress.principal   the principal stresses, Pa, the largest first
- *   pressure           -tr(stress)/3, Pa, unless the stream has it
- *   strain.principal   the principal strains, the largest first
- *   J                  sqrt det(1 + 2 strain), exactly det F, unless the stream has volume_ratio
- *
- * And the groups of facets and the node sets: 1 at the nodes of the group and 0 elsewhere. STATUS_INPUT for
- * groups that do not fit the nodes. */
-static enum status derived_add(struct stream *stream, const struct cells *cells, int64_t frame,
-                               struct error *error)
-{
-    FREED_BY(groups_free) struct groups facets = {0}, sets = {0};
-    RETURN_IF_ERROR(add_invariants(stream, frame, error));
-    RETURN_IF_ERROR(stream_groups(stream, GROUP_FACETS, false, &facets, error));
-    RETURN_IF_ERROR(add_groups(stream, "facets", &facets, cells->node_count, cells->dim, error));
-    RETURN_IF_ERROR(stream_groups(stream, GROUP_NODES, false, &sets, error));
-    return add_groups(stream, "set", &sets, cells->node_count, 1, error);
-}
-
 /* ---- the plot ---- */
 
 static bool begins_with(const char *text, const char *prefix)
 {
     return strncmp(text, prefix, strlen(prefix)) == 0;
-}
-
-/* Whether a section describes the reference state, which is the same in all frames. */
-static bool is_static(const char *name)
-{
-    return section_stage(name) < MADE_WITH_RESULTS || begins_with(name, DERIVED_GROUP);
 }
 
 /* Whether a section is a list, geometry, or of neither nodes nor cells, for any number of rows. */
@@ -199,23 +172,25 @@ static bool is_of_points(const char *name)
     return any;
 }
 
-static bool is_field(const struct vtk_mesh *mesh, const struct section *section, bool *of_cells)
+static bool is_field(const struct cells *cells, const struct section *section, bool *of_cells)
 {
-    bool fits_cells = mesh->node != NULL && section->rows == mesh->cell_count;
-    bool fits_nodes = section->rows == mesh->node_count;
+    bool fits_cells = cells->count > 0 && section->rows == cells->count;
+    bool fits_nodes = section->rows == cells->node_count;
     *of_cells = fits_cells && (is_of_points(section->name) || !fits_nodes);
     return (fits_cells || fits_nodes) && section->cols > 0;
 }
 
 static void choose_field(struct plot *plot, const struct section *section, int64_t frame)
 {
-    struct vtk_field field = {.section = section};
+    struct plot_field field = {.section = section};
     size_t length;
     int64_t of = frame_of(section->name, &length);
-    bool is_wanted = of == frame || (of == FRAME_NONE && is_static(section->name));
-    if (is_wanted && is_field(&plot->mesh, section, &field.of_cells)) {
-        field.name =
-            begins_with(section->name, DERIVED_GROUP) ? strchr(section->attributes, '=') + 1 : section->name;
+    bool is_derived = begins_with(section->name, DERIVED_GROUP);
+    /* What describes the reference state is the same in all frames. */
+    bool is_wanted =
+        of == frame || (of == FRAME_NONE && (is_derived || section_stage(section->name) < MADE_WITH_RESULTS));
+    if (is_wanted && is_field(&plot->cells, section, &field.of_cells)) {
+        field.name = is_derived ? strchr(section->attributes, '=') + 1 : section->name;
         if (of != FRAME_NONE) {
             char *label = plot->labels[plot->field_count];
             snprintf(label, sizeof plot->labels[0], "%.*s", (int)length, section->name);
@@ -228,10 +203,16 @@ static void choose_field(struct plot *plot, const struct section *section, int64
 enum status plot_choose(struct plot *plot, int64_t frame, struct error *error)
 {
     struct stream *stream = &plot->stream;
+    const struct cells *cells = &plot->cells;
+    FREED_BY(groups_free) struct groups facets = {0}, sets = {0};
     while (stream->section_count > plot->given) {
         stream_remove(stream, stream->sections[stream->section_count - 1].name);
     }
-    RETURN_IF_ERROR(derived_add(stream, &plot->cells, frame, error));
+    RETURN_IF_ERROR(add_invariants(stream, frame, error));
+    RETURN_IF_ERROR(stream_groups(stream, GROUP_FACETS, false, &facets, error));
+    RETURN_IF_ERROR(add_groups(stream, "facets", &facets, cells->node_count, cells->dim, error));
+    RETURN_IF_ERROR(stream_groups(stream, GROUP_NODES, false, &sets, error));
+    RETURN_IF_ERROR(add_groups(stream, "set", &sets, cells->node_count, 1, error));
     RETURN_IF_ERROR(RESIZE_ARRAY(&plot->fields, stream->section_count, error));
     RETURN_IF_ERROR(RESIZE_ARRAY(&plot->labels, stream->section_count, error));
     plot->field_count = 0;
@@ -272,25 +253,13 @@ enum status plot_time(const struct plot *plot, int64_t frame, double *time, stru
     return STATUS_OK;
 }
 
-static enum status find_mesh(struct plot *plot, struct error *error)
-{
-    struct cells *cells = &plot->cells;
-    struct groups *regions = &plot->regions;
-    RETURN_IF_ERROR(stream_cells(&plot->stream, false, cells, error));
-    plot->mesh = (struct vtk_mesh){.dim = cells->dim,
-                                   .node_count = cells->node_count,
-                                   .x = cells->x,
-                                   .cell_count = cells->count,
-                                   .node = cells->count > 0 ? cells->node : NULL};
-    RETURN_IF_ERROR(cells->count > 0 ? stream_groups(&plot->stream, GROUP_REGION, false, regions, error)
-                                     : STATUS_OK);
-    plot->mesh.regions = regions->names;
-    return STATUS_OK;
-}
-
 enum status plot_find(struct plot *plot, struct error *error)
 {
-    RETURN_IF_ERROR(find_mesh(plot, error));
+    struct cells *cells = &plot->cells;
+    RETURN_IF_ERROR(stream_cells(&plot->stream, false, cells, error));
+    RETURN_IF_ERROR(cells->count > 0
+                        ? stream_groups(&plot->stream, GROUP_REGION, false, &plot->regions, error)
+                        : STATUS_OK);
     plot->given = plot->stream.section_count;
     return find_frames(plot, error);
 }

@@ -14,20 +14,6 @@
 
 /* ---- what a run depends on: the scene with the files that it names, and the stream ---- */
 
-enum { BLOCK = 1 << 16 };
-
-/* Update the checksum with the bytes of a file. */
-static enum status add_file(const char *file, uLong *crc, struct error *error)
-{
-    ssize_t count = 0;
-    NEW_SCRATCH(unsigned char, block, BLOCK, error);
-    FREED_BY(descriptor_close) int descriptor = open(file, O_RDONLY | O_CLOEXEC);
-    while (descriptor >= 0 && (count = read(descriptor, block, BLOCK)) > 0) {
-        *crc = crc32_z(*crc, block, (size_t)count);
-    }
-    return descriptor < 0 || count < 0 ? fail_system(error, file) : STATUS_OK;
-}
-
 static uLong add_section(uLong crc, const struct section *section)
 {
     const int64_t shape[] = {(int64_t)section->type, section->rows, section->cols};
@@ -52,16 +38,16 @@ enum status checkpoint_identify(const struct scene *scene, const struct stream *
 {
     uLong crc = scene->checksum;
     for (int64_t i = 0; i < scene->files.count; i++) {
-        RETURN_IF_ERROR(add_file(scene->files.names[i], &crc, error));
+        FREED_BY(textfile_free) struct textfile file = {0};
+        RETURN_IF_ERROR(bytefile_read(scene->files.names[i], SIZE_MAX, &file, error));
+        crc = crc32_z(crc, (const Bytef *)file.text, file.size);
     }
     identity->scene = (uint32_t)crc;
     identity->input = checkpoint_identify_input(input);
     return STATUS_OK;
 }
 
-/* ---- the state ---- */
-
-/* The run's values are sections `state.NAME`. */
+/* ---- the state: the run's values are sections `state.NAME` ---- */
 
 enum { NAME_SIZE = 112 };
 
@@ -71,27 +57,20 @@ static void section_name(const struct state_value *value, char name[NAME_SIZE])
 }
 
 /* Flags are saved as numbers. */
-static enum status save_flags(struct stream *stream, const char *name, const struct state_value *value,
-                              struct error *error)
-{
-    const bool *flags = value->values;
-    int32_t *numbers;
-    RETURN_IF_ERROR(NEW_ARRAY(&numbers, value->count, error));
-    for (int64_t i = 0; i < value->count; i++) {
-        numbers[i] = flags[i];
-    }
-    return stream_put(stream, name, TYPE_I4, value->count, 1, "", numbers, true, error);
-}
-
 static enum status save(void *context, const struct state_value *value, struct error *error)
 {
     char name[NAME_SIZE];
+    int32_t *numbers;
     section_name(value, name);
-    if (value->type == STATE_FLAGS) {
-        return save_flags(context, name, value, error);
+    if (value->type != STATE_FLAGS) {
+        return stream_put(context, name, value->type == STATE_NUMBERS ? TYPE_F8 : TYPE_I8, value->count, 1,
+                          "", value->values, false, error);
     }
-    return stream_put(context, name, value->type == STATE_NUMBERS ? TYPE_F8 : TYPE_I8, value->count, 1, "",
-                      value->values, false, error);
+    RETURN_IF_ERROR(NEW_ARRAY(&numbers, value->count, error));
+    for (int64_t i = 0; i < value->count; i++) {
+        numbers[i] = ((const bool *)value->values)[i];
+    }
+    return stream_put(context, name, TYPE_I4, value->count, 1, "", numbers, true, error);
 }
 
 static enum status restore(void *context, const struct state_value *value, struct error *error)

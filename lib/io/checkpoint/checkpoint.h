@@ -15,7 +15,7 @@ struct checkpoint_identity {
     uint32_t input; /* of the stream's sections */
 };
 
-/* Fills in the checksums. STATUS_SYSTEM when a file that the scene names cannot be read again. */
+/* Fills in the checksums. Errors of the files that the scene names: as bytefile_read. */
 MUST_CHECK enum status checkpoint_identify(const struct scene *scene, const struct stream *input,
                                            struct checkpoint_identity *identity, struct error *error);
 

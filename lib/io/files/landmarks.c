@@ -1,8 +1,6 @@
 #include "io/files/landmarks.h"
 
-#include "base/memory.h"
 #include "base/options.h"
-#include "io/files/json.h"
 #include "io/files/textfile.h"
 
 #include <float.h>
@@ -10,105 +8,19 @@
 
 static const size_t size_limit = (size_t)1 << 28;
 
+bool landmarks_named(const char *path)
+{
+    return text_ends(path, ".mrk.json") || text_ends(path, ".fcsv");
+}
+
+/* ---- fcsv ---- */
+
 /* A file that is being read. */
 struct landmarks {
     struct table *table;
     double sign; /* of x and y, to RAS */
     char *empty; /* label */
 };
-
-bool landmarks_named(const char *path)
-{
-    return text_ends(path, ".mrk.json") || text_ends(path, ".fcsv");
-}
-
-/* ---- markups ---- */
-
-/* A markup, of which the last point is being read. */
-struct markup {
-    struct table *table;
-    char *empty;    /* label */
-    int64_t first;  /* row */
-    double sign;    /* of x and y, to RAS */
-    bool has_units; /* said: of a code of UCUM, the unit comes first */
-    char *label;
-    double x[3];
-    int count; /* of its coordinates */
-    bool is_undefined;
-    int64_t line; /* of its position */
-};
-
-static void end_point(struct markup *markup, struct json *json)
-{
-    if (markup->count != 3 || markup->is_undefined) {
-        json_fail(json, "a control point without a position of three numbers: place it, or leave it out");
-    } else {
-        json->status = table_append(markup->table, markup->x, markup->line,
-                                    markup->label != NULL ? markup->label : markup->empty, json->error);
-    }
-    markup->label = NULL;
-    markup->count = 0;
-    markup->is_undefined = false;
-}
-
-static void end_markup(struct markup *markup)
-{
-    for (; markup->first < markup->table->rows; markup->first++) {
-        markup->table->values[3 * markup->first] *= markup->sign;
-        markup->table->values[3 * markup->first + 1] *= markup->sign;
-    }
-    markup->sign = -1; /* LPS if nothing is said */
-    markup->has_units = false;
-}
-
-static bool is_text(const char *text, const char *wanted)
-{
-    return text != NULL && strcmp(text, wanted) == 0;
-}
-
-static void take_value(struct json *json, enum json_kind kind, char *text, double number)
-{
-    struct markup *markup = json->context;
-    if (is_text(json->path, "markups[]") && kind == JSON_END) {
-        end_markup(markup);
-    } else if (is_text(json->path, "markups[].coordinateSystem")) {
-        markup->sign = is_text(text, "RAS") ? 1 : -1;
-        if (markup->sign < 0 && !is_text(text, "LPS")) {
-            json_fail(json, "coordinateSystem is neither LPS nor RAS");
-        }
-    } else if (strncmp(json->path, "markups[].coordinateUnits", 25) == 0) { /* a text, or a list */
-        if (!markup->has_units && !is_text(text, "mm")) {
-            json_fail(json, "coordinateUnits is not mm");
-        }
-        markup->has_units = true;
-    } else if (is_text(json->path, "markups[].controlPoints[]") && kind == JSON_END) {
-        end_point(markup, json);
-    } else if (is_text(json->path, "markups[].controlPoints[].label")) {
-        markup->label = text;
-        if (kind != JSON_STRING) {
-            json_fail(json, "a string is expected");
-        }
-    } else if (is_text(json->path, "markups[].controlPoints[].positionStatus")) {
-        markup->is_undefined = !is_text(text, "defined");
-    } else if (strncmp(json->path, "markups[].controlPoints[].position[]", 36) == 0) {
-        markup->x[markup->count < 3 ? markup->count : 2] = number;
-        markup->count++;
-        markup->line = json->line;
-        if (kind != JSON_NUMBER || json->path[36] != '\0') {
-            json_fail(json, "a finite number is expected");
-        }
-    }
-}
-
-static enum status read_markups(const struct landmarks *landmarks, char *text, struct error *error)
-{
-    struct markup markup = {.table = landmarks->table, .empty = landmarks->empty, .sign = -1};
-    struct json json = {.at = text, .error = error, .line = 1, .take = take_value, .context = &markup};
-    json_read(&json);
-    return json.status;
-}
-
-/* ---- fcsv ---- */
 
 enum { COLUMNS = 32 };
 
@@ -216,7 +128,7 @@ enum status landmarks_read(const char *path, struct table *table, struct error *
         return fail(error, STATUS_INPUT, "%s: a byte of value 0: not a text", path);
     }
     status = text_ends(path, ".fcsv") ? read_fcsv(&landmarks, file.text, error)
-                                      : read_markups(&landmarks, file.text, error);
+                                      : markups_read(file.text, landmarks.empty, table, error);
     if (status == STATUS_INPUT) {
         struct error why = *error; /* begins with the line */
         return fail(error, status, "%s:%s", path, why.text);

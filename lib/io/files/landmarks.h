@@ -12,6 +12,10 @@ bool landmarks_named(const char *path);
  * as `FILE:LINE: ...`, for what is not such a file, a point without a position, and no point at all. */
 MUST_CHECK enum status landmarks_read(const char *path, struct table *table, struct error *error);
 
+/* The same of the text of markups, whose strings are decoded in place; points without a label have an `empty`
+ * one. Messages begin with the line. */
+MUST_CHECK enum status markups_read(char *text, char *empty, struct table *table, struct error *error);
+
 /* Print points, x[3 * count] in RAS, m, in the format that `path` names: in mm, LPS in JSON, RAS in .fcsv.
  * label: NULL, or the names of the points of[0 .. count - 1]. */
 void landmarks_print(FILE *file, const char *path, int64_t count, const double *x, const int64_t *of,

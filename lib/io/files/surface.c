@@ -5,6 +5,7 @@
 #include "io/files/textfile.h"
 #include "base/vector.h"
 
+#include <ctype.h>
 #include <float.h>
 #include <math.h>
 #include <stdbool.h>
@@ -72,40 +73,29 @@ static enum status fail_word(const struct words *words, const char *what, struct
     return fail(error, STATUS_INPUT, "%s:%jd: '%.40s' %s", words->path, words->line, words->word, what);
 }
 
-static enum status read_vector(struct words *words, double x[3], struct error *error)
-{
-    struct error why;
-    for (int i = 0; i < 3; i++) {
-        if (!next_word(words) || parse_double(words->word, "", -DBL_MAX, DBL_MAX, &x[i], &why) != STATUS_OK) {
-            return fail_word(words, "is not a finite number", error);
-        }
-    }
-    return STATUS_OK;
-}
-
 static bool is_word(const struct words *words, const char *word)
 {
     return strcasecmp(words->word, word) == 0;
 }
 
-/* Read a word between "solid NAME" and "endsolid", of which the vertices and the ends of facets count.
- * *line, *vertices, row: of the facet so far. */
-static enum status read_stl_word(struct words *words, int64_t *line, int *vertices, double row[9],
-                                 struct table *table, struct error *error)
+/* Read a facet, of which "facet" has been read: these words, where 0 is a coordinate, and * is not used. */
+static enum status read_facet(struct words *words, struct table *table, struct error *error)
 {
-    if (is_word(words, "facet")) {
-        *line = words->line;
-    } else if (is_word(words, "normal")) {
-        (void)(next_word(words) && next_word(words) && next_word(words));
-    } else if (is_word(words, "vertex") && *vertices < 3) {
-        return read_vector(words, row + 3 * (*vertices)++, error);
-    } else if (is_word(words, "endfacet") && *vertices == 3) {
-        *vertices = 0;
-        return table_append(table, row, *line, NULL, error);
-    } else if (!is_word(words, "outer") && !is_word(words, "loop") && !is_word(words, "endloop")) {
-        return fail_word(words, "has no place here: a facet has three lines 'vertex X Y Z'", error);
+    char form[] = "normal * * * outer loop vertex 0 0 0 vertex 0 0 0 vertex 0 0 0 endloop endfacet",
+         *rest = form;
+    struct error why;
+    int64_t line = words->line;
+    double row[9], *x = row;
+    for (const char *wanted = text_word(&rest); *wanted != '\0'; wanted = text_word(&rest)) {
+        bool any = next_word(words);
+        if (*wanted == '0' && parse_double(words->word, "", -DBL_MAX, DBL_MAX, x++, &why) != STATUS_OK) {
+            return fail_word(words, "is not a finite number", error);
+        }
+        if (!any || (isalpha((unsigned char)*wanted) && !is_word(words, wanted))) {
+            return fail_word(words, "has no place here: a facet has three lines 'vertex X Y Z'", error);
+        }
     }
-    return STATUS_OK;
+    return table_append(table, row, line, NULL, error);
 }
 
 /* Read solids: "solid NAME", facets, "endsolid NAME". */
@@ -113,22 +103,21 @@ static enum status read_ascii_stl(const char *path, const struct textfile *file,
                                   struct error *error)
 {
     struct words words = {.path = path, .at = file->text, .line = 1};
-    int64_t line = 1;
-    int vertices = 0;
     bool open = false;
-    double row[9];
     while (next_word(&words)) {
-        if (is_word(&words, "solid") || (is_word(&words, "endsolid") && vertices == 0)) {
-            open = !open && is_word(&words, "solid");
+        if (is_word(&words, open ? "endsolid" : "solid")) {
+            open = !open;
             words.at += strcspn(words.at, "\n");
-        } else if (open) {
-            RETURN_IF_ERROR(read_stl_word(&words, &line, &vertices, row, table, error));
+        } else if (open && is_word(&words, "facet")) {
+            RETURN_IF_ERROR(read_facet(&words, table, error));
         } else {
-            return fail_word(&words, "stands outside of 'solid' and 'endsolid'", error);
+            return fail_word(&words,
+                             open ? "instead of 'facet' or 'endsolid'"
+                                  : "stands outside of 'solid' and 'endsolid'",
+                             error);
         }
     }
-    return open || vertices > 0 ? fail_word(&words, "instead of 'endfacet' or 'endsolid': truncated?", error)
-                                : STATUS_OK;
+    return open ? fail_word(&words, "instead of 'facet' or 'endsolid': truncated?", error) : STATUS_OK;
 }
 
 static enum status read_stl(const char *path, struct table *table, struct error *error)

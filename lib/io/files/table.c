@@ -7,12 +7,11 @@
 
 #include <float.h>
 #include <math.h>
-#include <stdbool.h>
 #include <string.h>
 #include <strings.h>
 
 static const size_t size_limit = (size_t)1 << 31;
-enum { COLUMN_LIMIT = 64, WORD_LIMIT = 64 };
+enum { COLUMN_LIMIT = 64 };
 
 enum status table_append(struct table *table, const double *row, int64_t line, char *label,
                          struct error *error)
@@ -44,55 +43,33 @@ enum status table_end_block(struct table *table, struct error *error)
     return STATUS_OK;
 }
 
-/* Move to the next word of a line, which ends at '\n' or a comment; returns its length, 0 at the end. */
-static size_t next_word(const char **at)
-{
-    *at += strspn(*at, " \t");
-    return **at == '#' ? 0 : strcspn(*at, " \t\n");
-}
-
 /* The admissible tables: number of columns; the columns open to closed - 1 may lack values. */
 struct form {
     int least, most, open, closed;
 };
 
-static bool is_no_value(const char *word)
-{
-    return strcmp(word, "-") == 0 || strcasecmp(word, "nan") == 0;
-}
-
-/* Split the line at `text` into *count numbers; 0 for a blank or comment line. */
-static enum status read_row(const char *path, int64_t line, const char *text, const struct form *form,
+/* Split a line, which is modified, into *count numbers; 0 for a blank or comment line. */
+static enum status read_row(const char *path, int64_t line, char *text, const struct form *form,
                             double row[COLUMN_LIMIT], int *count, struct error *error)
 {
     *count = 0;
-    for (size_t length; (length = next_word(&text)) > 0; text += length) {
-        char word[WORD_LIMIT] = "";
+    for (const char *word = text_word(&text); *word != '\0' && *word != '#'; word = text_word(&text)) {
         struct error why;
-        memcpy(word, text, length < sizeof word ? length : sizeof word - 1);
         if (*count == COLUMN_LIMIT) {
             return fail(error, STATUS_INPUT, "%s:%jd: more than %d columns", path, line, COLUMN_LIMIT);
         }
-        if (*count >= form->open && *count < form->closed && is_no_value(word)) {
-            row[(*count)++] = NAN;
-            continue;
-        }
-        if (length >= sizeof word ||
-            parse_double(word, "", -DBL_MAX, DBL_MAX, &row[*count], &why) != STATUS_OK) {
-            return fail(error, STATUS_INPUT, "%s:%jd: column %d: '%s' is not a finite number%s", path, line,
-                        *count + 1, word,
+        if (*count >= form->open && *count < form->closed &&
+            (strcmp(word, "-") == 0 || strcasecmp(word, "nan") == 0)) {
+            row[*count] = NAN;
+        } else if (parse_double(word, "", -DBL_MAX, DBL_MAX, &row[*count], &why) != STATUS_OK) {
+            return fail(error, STATUS_INPUT, "%s:%jd: column %d: '%.63s' is not a finite number%s", path,
+                        line, *count + 1, word,
                         strpbrk(word, ",;") != NULL ? ": write decimal points, and blanks between numbers"
                                                     : "");
         }
         ++*count;
     }
     return STATUS_OK;
-}
-
-/* A blank line separates blocks; a comment alone does not. */
-static bool is_blank_line(const char *text)
-{
-    return text[strspn(text, " \t")] == '\n';
 }
 
 static enum status check_columns(const char *path, int64_t line, const struct table *table, int count,
@@ -125,13 +102,14 @@ enum status table_read_open(const char *path, int least, int most, int open, int
         return table_end_block(table, error);
     }
     RETURN_IF_ERROR(textfile_read(path, size_limit, &file, error));
-    for (const char *at = file.text; *at != '\0'; at = strchr(at, '\n') + 1, line++) {
+    for (char *rest = file.text; *rest != '\0'; line++) {
         double row[COLUMN_LIMIT];
         int count;
-        if (is_blank_line(at)) {
+        char *text = strsep(&rest, "\n");
+        if (text[strspn(text, " \t")] == '\0') { /* a blank line; a comment alone is none */
             RETURN_IF_ERROR(table_end_block(table, error));
         }
-        RETURN_IF_ERROR(read_row(path, line, at, &form, row, &count, error));
+        RETURN_IF_ERROR(read_row(path, line, text, &form, row, &count, error));
         if (count > 0) {
             RETURN_IF_ERROR(check_columns(path, line, table, count, &form, error));
             table->cols = count;

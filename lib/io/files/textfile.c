@@ -59,13 +59,9 @@ static enum status check_kind(const char *path, struct error *error)
     if (stat(path, &facts) != 0) {
         return fail(error, STATUS_INPUT, "%s: %s", path, strerror(errno));
     }
-    if (S_ISDIR(facts.st_mode)) {
-        return fail(error, STATUS_INPUT, "%s: is a folder: name a text file", path);
-    }
-    if (!S_ISREG(facts.st_mode) && !S_ISFIFO(facts.st_mode)) {
-        return fail(error, STATUS_INPUT, "%s: is a device or socket: name a text file", path);
-    }
-    return STATUS_OK;
+    return S_ISREG(facts.st_mode) || S_ISFIFO(facts.st_mode)
+               ? STATUS_OK
+               : fail(error, STATUS_INPUT, "%s: is a folder, device or socket: name a text file", path);
 }
 
 static enum status textfile_check(const char *path, const struct textfile *file, struct error *error)
@@ -118,4 +114,13 @@ void textfile_free(struct textfile *file)
 {
     free(file->text);
     *file = (struct textfile){0};
+}
+
+char *text_word(char **at)
+{
+    char *word = *at + strspn(*at, " \t");
+    char *end = word + strcspn(word, " \t");
+    *at = *end != '\0' ? end + 1 : end;
+    *end = '\0';
+    return word;
 }

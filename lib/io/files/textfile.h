@@ -27,6 +27,11 @@ MUST_CHECK enum status bytefile_read(const char *path, size_t most, struct textf
 /* Release the text; the struct becomes empty. */
 void textfile_free(struct textfile *file);
 
+/* The next word of a line, between blanks and tabs, which is cut there; *at moves behind it. "": there is
+ * none.
+ */
+char *text_word(char **at);
+
 /* Read to the end, or beyond `most` bytes: (*bytes)[*size], to be freed, also on failure, and ROOM_BEHIND
  * bytes of 0. Unless goes_on is NULL, reading ends where it does not accept the first 64 KiB. */
 enum { ROOM_BEHIND = 8 };

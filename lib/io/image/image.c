@@ -1,6 +1,7 @@
 #include "io/image/image_private.h"
 
 #include "base/memory.h"
+#include "base/round_off.h"
 #include "base/vector.h"
 
 #include <float.h>
@@ -9,73 +10,29 @@
 #include <string.h>
 
 static const struct nifti_type image_types[] = {
-    {IMAGE_UINT8,
-     "uint8",
-     1,
-     1,
-     0,
-     UINT8_MAX,
-     {"uint8|uchar|unsigned char|uint8_t", "MET_UCHAR|MET_UCHAR_ARRAY", "UInt8",
-      "unsigned_char|vtktypeuint8"}},
-    {IMAGE_INT8,
-     "int8",
-     1,
-     1,
-     INT8_MIN,
-     INT8_MAX,
-     {"int8|signed char|int8_t", "MET_CHAR|MET_CHAR_ARRAY", "Int8", "char|vtktypeint8"}},
-    {IMAGE_INT16,
-     "int16",
-     2,
-     1,
-     INT16_MIN,
-     INT16_MAX,
-     {"int16|short|short int|signed short|signed short int|int16_t", "MET_SHORT|MET_SHORT_ARRAY", "Int16",
-      "short|vtktypeint16"}},
-    {IMAGE_UINT16,
-     "uint16",
-     2,
-     1,
-     0,
-     UINT16_MAX,
-     {"uint16|ushort|unsigned short|unsigned short int|uint16_t", "MET_USHORT|MET_USHORT_ARRAY", "UInt16",
-      "unsigned_short|vtktypeuint16"}},
-    {IMAGE_INT32,
-     "int32",
-     4,
-     1,
-     INT32_MIN,
-     INT32_MAX,
-     {"int32|int|signed int|int32_t", "MET_INT|MET_LONG|MET_INT_ARRAY|MET_LONG_ARRAY", "Int32",
-      "int|vtktypeint32|vtkIdType"}},
-    {IMAGE_UINT32,
-     "uint32",
-     4,
-     1,
-     0,
-     UINT32_MAX,
-     {"uint32|uint|unsigned int|uint32_t", "MET_UINT|MET_ULONG|MET_UINT_ARRAY|MET_ULONG_ARRAY", "UInt32",
-      "unsigned_int|vtktypeuint32"}},
-    {IMAGE_INT64,
-     "int64",
-     8,
-     1,
-     -9223372036854774784.0,
-     9223372036854774784.0,
-     {"int64|longlong|long long|long long int|signed long long|signed long long int|int64_t",
-      "MET_LONG_LONG|MET_LONG_LONG_ARRAY", "Int64", "long|vtktypeint64"}},
-    {IMAGE_UINT64,
-     "uint64",
-     8,
-     1,
-     0,
-     18446744073709549568.0,
-     {"uint64|ulonglong|unsigned long long|unsigned long long int|uint64_t",
-      "MET_ULONG_LONG|MET_ULONG_LONG_ARRAY", "UInt64", "unsigned_long|vtktypeuint64"}},
-    {IMAGE_FLOAT32, "float32", 4, 1, 0, 0, {"float", "MET_FLOAT|MET_FLOAT_ARRAY", "Float32", "float"}},
-    {IMAGE_FLOAT64, "float64", 8, 1, 0, 0, {"double", "MET_DOUBLE|MET_DOUBLE_ARRAY", "Float64", "double"}},
-    {IMAGE_RGB24, "RGB24", 1, 3, 0, UINT8_MAX, {"uint8", "MET_UCHAR"}},
-    {IMAGE_RGBA32, "RGBA32", 1, 4, 0, UINT8_MAX, {"uint8", "MET_UCHAR"}},
+    {IMAGE_UINT8, "uint8", 1, 1, 0, UINT8_MAX, "uint8|uchar|unsigned char|uint8_t",
+     "MET_UCHAR|MET_UCHAR_ARRAY", "unsigned_char|vtktypeuint8"},
+    {IMAGE_INT8, "int8", 1, 1, INT8_MIN, INT8_MAX, "int8|signed char|int8_t", "MET_CHAR|MET_CHAR_ARRAY",
+     "char|vtktypeint8"},
+    {IMAGE_INT16, "int16", 2, 1, INT16_MIN, INT16_MAX,
+     "int16|short|short int|signed short|signed short int|int16_t", "MET_SHORT|MET_SHORT_ARRAY",
+     "short|vtktypeint16"},
+    {IMAGE_UINT16, "uint16", 2, 1, 0, UINT16_MAX, "uint16|ushort|unsigned short|unsigned short int|uint16_t",
+     "MET_USHORT|MET_USHORT_ARRAY", "unsigned_short|vtktypeuint16"},
+    {IMAGE_INT32, "int32", 4, 1, INT32_MIN, INT32_MAX, "int32|int|signed int|int32_t",
+     "MET_INT|MET_LONG|MET_INT_ARRAY|MET_LONG_ARRAY", "int|vtktypeint32|vtkIdType"},
+    {IMAGE_UINT32, "uint32", 4, 1, 0, UINT32_MAX, "uint32|uint|unsigned int|uint32_t",
+     "MET_UINT|MET_ULONG|MET_UINT_ARRAY|MET_ULONG_ARRAY", "unsigned_int|vtktypeuint32"},
+    {IMAGE_INT64, "int64", 8, 1, -9223372036854774784.0, 9223372036854774784.0,
+     "int64|longlong|long long|long long int|signed long long|signed long long int|int64_t",
+     "MET_LONG_LONG|MET_LONG_LONG_ARRAY", "long|vtktypeint64"},
+    {IMAGE_UINT64, "uint64", 8, 1, 0, 18446744073709549568.0,
+     "uint64|ulonglong|unsigned long long|unsigned long long int|uint64_t",
+     "MET_ULONG_LONG|MET_ULONG_LONG_ARRAY", "unsigned_long|vtktypeuint64"},
+    {IMAGE_FLOAT32, "float32", 4, 1, 0, 0, "float", "MET_FLOAT|MET_FLOAT_ARRAY", "float"},
+    {IMAGE_FLOAT64, "float64", 8, 1, 0, 0, "double", "MET_DOUBLE|MET_DOUBLE_ARRAY", "double"},
+    {IMAGE_RGB24, "RGB24", 1, 3, 0, UINT8_MAX, "uint8", "MET_UCHAR", ""},
+    {IMAGE_RGBA32, "RGBA32", 1, 4, 0, UINT8_MAX, "uint8", "MET_UCHAR", ""},
 };
 
 enum { IMAGE_TYPES = sizeof image_types / sizeof *image_types };
@@ -93,8 +50,10 @@ const struct nifti_type *nifti_type(int code)
 const struct nifti_type *nifti_type_named(enum number_format format, const char *name)
 {
     for (int t = 0; t < IMAGE_TYPES; t++) {
-        if (image_types[t].names[format] != NULL && header_is(image_types[t].names[format], name)) {
-            return &image_types[t];
+        const struct nifti_type *type = &image_types[t];
+        const char *const names[] = {type->nrrd, type->metaimage, type->name, type->vtk};
+        if (type->components == 1 && header_is(names[format], name)) {
+            return type;
         }
     }
     return NULL;
@@ -214,4 +173,81 @@ void image_note(struct image *image, const char *format, ...)
     va_start(values, format);
     vsnprintf(image->note + length, sizeof image->note - length, format, values);
     va_end(values);
+}
+
+/* ---- values between the voxels ---- */
+
+const char *const image_method_names[IMAGE_METHOD_COUNT] = {"nearest", "linear", "cubic"};
+
+/* Indices and weights along one axis. */
+struct taps {
+    int count;
+    size_t index[4];
+    double weight[4];
+};
+
+/* Give the weight of the value beyond the border to those beside it, whose quadratic it continues (Keys
+ * 1981).
+ */
+static void fold(double *beyond, int step)
+{
+    beyond[step] += 3 * *beyond;
+    beyond[2 * step] -= 3 * *beyond;
+    beyond[3 * step] += *beyond;
+    *beyond = 0;
+}
+
+static void find_taps(enum image_method method, double place, size_t size, struct taps *taps)
+{
+    method = method == IMAGE_CUBIC && size < 3 ? IMAGE_LINEAR : method;
+    place = fmin(fmax(place, 0), (double)size - 1);
+    place = fabs(place - rint(place)) < COARSE_ROUND_OFF ? rint(place) : place;
+    double low = method == IMAGE_NEAREST ? floor(place + 0.5) : floor(place), t = place - low;
+    int64_t first = (int64_t)low - (method == IMAGE_CUBIC ? 1 : 0);
+    double cubic[4] = {t * (-0.5 + t * (1 - 0.5 * t)), 1 + t * t * (-2.5 + 1.5 * t),
+                       t * (0.5 + t * (2 - 1.5 * t)), t * t * (-0.5 + 0.5 * t)};
+    if (first < 0) {
+        fold(cubic, 1);
+    }
+    if (first + 3 == (int64_t)size) {
+        fold(cubic + 3, -1);
+    }
+    double linear[2] = {1 - t, t};
+    int width = method == IMAGE_NEAREST ? 1 : method == IMAGE_LINEAR ? 2 : 4;
+    taps->count = 0;
+    for (int i = 0; i < width; i++) {
+        double weight = width == 1 ? 1 : width == 2 ? linear[i] : cubic[i];
+        if (weight != 0) { /* so that at a voxel centre neighbours that are NaN have no effect */
+            taps->index[taps->count] = (size_t)(first + i);
+            taps->weight[taps->count++] = weight;
+        }
+    }
+}
+
+bool image_sample(const struct image *image, enum image_method method, const double voxel[3], double *values)
+{
+    struct taps taps[3];
+    for (int i = 0; i < 3; i++) {
+        /* A little more, for places on the border. */
+        if (!(voxel[i] >= -0.5 - 1e-6 && voxel[i] <= (double)image->size[i] - 0.5 + 1e-6)) {
+            return false;
+        }
+        find_taps(method, voxel[i], image->size[i], &taps[i]);
+    }
+    for (size_t c = 0; c < image->components; c++) {
+        values[c] = 0;
+    }
+    for (int k = 0; k < taps[2].count; k++) {
+        for (int j = 0; j < taps[1].count; j++) {
+            double weight = taps[2].weight[k] * taps[1].weight[j];
+            size_t row = (taps[2].index[k] * image->size[1] + taps[1].index[j]) * image->size[0];
+            for (int i = 0; i < taps[0].count; i++) {
+                const double *from = image->values + (row + taps[0].index[i]) * image->components;
+                for (size_t c = 0; c < image->components; c++) {
+                    values[c] += weight * taps[0].weight[i] * from[c];
+                }
+            }
+        }
+    }
+    return true;
 }

@@ -1,4 +1,4 @@
-/* The bytes of an image file, and the decoded header of a NIfTI file; private to lib/io. */
+/* The bytes of an image file, its header, and how its values lie; private to lib/io. */
 #pragma once
 
 #include "io/image/image.h"
@@ -6,27 +6,15 @@
 #include <stdint.h>
 #include <stdio.h>
 
-enum { NIFTI1_HEADER = 348, NIFTI2_HEADER = 540 };
-
-/* The fields that are used, in the file's units. */
-struct nifti {
-    int version;
-    bool swapped;
-    bool pair; /* the data are in a file of their own */
-    double dim[8], datatype, bits, intent, pixdim[8], offset, slope, inter, qform, sform, units;
-    double quatern[3], qoffset[3], srow[3][4];
-};
-
 /* How the values of a type are stored. */
 struct nifti_type {
     int code;
-    const char *name;
-    int bytes;            /* of one component */
-    int components;       /* of the type itself */
-    double least, most;   /* of an integer type; 0, 0: floating point */
-    const char *names[4]; /* A|B, in headers of NRRD and of MetaImage, where the first one is written, in VTU
-                             and in legacy files of VTK. Those of a colour are those of its components, whose
-                             type comes first. */
+    const char *name;                   /* in VTU, too, in any case */
+    int bytes;                          /* of one component */
+    int components;                     /* of the type itself */
+    double least, most;                 /* of an integer type; 0, 0: floating point */
+    const char *nrrd, *metaimage, *vtk; /* A|B, in headers, where the first one is written, and in legacy
+                                           files of VTK; of a colour those of its components */
 };
 enum number_format { NUMBERS_OF_NRRD, NUMBERS_OF_METAIMAGE, NUMBERS_OF_VTU, NUMBERS_OF_VTK };
 
@@ -67,19 +55,17 @@ struct image_layout {
     char data_file[256]; /* in the folder of the header or below; "": they follow the header */
 };
 
-/* Read a header: sizes, components, place, and the layout of the
- * values. STATUS_INPUT, with the key, for what is not read or contradicts itself. */
+/* Read a header: sizes, components, place, and the layout of the values; of NIfTI, that of the file `name`.
+ * STATUS_INPUT, with the key, for what is not read or contradicts itself. */
 MUST_CHECK enum status nrrd_header(struct image_bytes *file, struct image *image, struct image_layout *layout,
                                    struct error *error);
+MUST_CHECK enum status nifti_header(struct image_bytes *file, const char *name, struct image *image,
+                                    struct image_layout *layout, struct error *error);
 MUST_CHECK enum status metaimage_header(struct image_bytes *file, struct image *image,
                                         struct image_layout *layout, struct error *error);
 
 /* Whether these are the first bytes of a MetaImage header. */
 bool metaimage_begins(const unsigned char bytes[4]);
-
-/* Read the values of an image whose sizes and scaling are set, and check that nothing follows them. */
-MUST_CHECK enum status image_values_read(struct image_bytes *file, const struct image_layout *layout,
-                                         struct image *image, struct error *error);
 
 /* Of an image with segments, make one layer of labels: each layer's own, or of several layers the numbers of
  * the segments, 1, 2, ...; where segments overlap, the later one is taken, with a note. STATUS_INPUT for
@@ -89,16 +75,10 @@ MUST_CHECK enum status image_segments_merge(struct image *image, struct error *e
 /* The version and byte order of a header, from its first 4 bytes; 0: not a header. */
 int nifti_version(const unsigned char *bytes, bool *swapped);
 
-/* Decode a whole header of that version. */
-void nifti_decode(const unsigned char *bytes, int version, bool swapped, struct nifti *header,
-                  struct image *image);
-
 /* Encode an image's header, little-endian, with the 4 bytes that follow it; returns the offset of the data.
  */
-size_t nifti_encode(const struct image *image, unsigned char bytes[NIFTI2_HEADER + 4]);
-
-/* Set image->to_world, unit and space from a header, and note assumptions. */
-MUST_CHECK enum status nifti_space(const struct nifti *header, struct image *image, struct error *error);
+enum { NIFTI_MOST = 544 };
+size_t nifti_encode(const struct image *image, unsigned char bytes[NIFTI_MOST]);
 
 /* Set image->to_world to a map to RAS, m; a slice's third step may be zero. STATUS_INPUT, with the name of
  * its source, for one that is not finite or not invertible. */
@@ -110,8 +90,3 @@ void image_note(struct image *image, const char *format, ...) __attribute__((for
 
 /* Set image->description: its beginning, '?' for what is not printable. */
 void image_describe(struct image *image, const char *text);
-
-/* Read a file out of gzip; of what is no image, unless `any` is wanted, only the beginning. */
-MUST_CHECK enum status image_bytes_read(int descriptor, bool any, struct image_bytes *file,
-                                        struct error *error);
-void image_bytes_free(struct image_bytes *file);

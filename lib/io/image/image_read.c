@@ -1,9 +1,10 @@
 /* Reading images: the header is checked before it is used. libnifti is
  * not used: version 3.0.1 accepts a compressed file without checksum and a header with fewer voxels than
  * there are, and it cannot read a pipe. */
-#include "io/image/text_header.h"
+#include "io/image/image_private.h"
 
 #include "base/memory.h"
+#include "base/vector.h"
 #include "io/files/textfile.h"
 
 #include <errno.h>
@@ -13,9 +14,233 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <zlib.h>
+
+/* ---- bytes ---- */
+
+enum { STRIDE = 1 << 20 };
+
+/* Append what `packed` holds, members of gzip or zlib up to the end. zlib's gzread is not used: it accepts a
+ * file without its checksum if the data end with a block. */
+static enum status inflate_all(const unsigned char *packed, size_t left, struct image_bytes *file,
+                               struct error *error)
+{
+    z_stream stream = {.next_in = (unsigned char *)(uintptr_t)packed}; /* zlib's const */
+    int64_t room = 0;
+    int code = inflateInit2(&stream, 15 + 32);
+    enum status status = code == Z_OK ? STATUS_OK : fail_memory(error, "compressed image");
+    while (status == STATUS_OK && (left > 0 || stream.avail_in > 0)) {
+        size_t some = stream.avail_in == 0 ? left < STRIDE ? left : STRIDE : 0;
+        stream.avail_in += (unsigned)some;
+        left -= some;
+        if (code == Z_STREAM_END) { /* another member follows */
+            inflateReset(&stream);
+        }
+        status = GROW_ARRAY(&file->bytes, (int64_t)file->size + STRIDE + ROOM_BEHIND, &room, error);
+        if (status != STATUS_OK) {
+            break;
+        }
+        stream.next_out = file->bytes + file->size;
+        stream.avail_out = STRIDE;
+        code = inflate(&stream, Z_NO_FLUSH);
+        file->size += STRIDE - stream.avail_out;
+        if (code == Z_MEM_ERROR) {
+            status = fail_memory(error, "compressed image");
+        } else if (code != Z_OK && code != Z_BUF_ERROR && code != Z_STREAM_END) {
+            status = fail(error, STATUS_INPUT, "damaged gzip file (%s), behind byte %zu of its contents",
+                          stream.msg != NULL ? stream.msg : "not one", file->size);
+        }
+    }
+    inflateEnd(&stream);
+    if (status == STATUS_OK && file->bytes != NULL) {
+        memset(file->bytes + file->size, 0, ROOM_BEHIND);
+    }
+    return status != STATUS_OK || code == Z_STREAM_END
+               ? status
+               : fail(error, STATUS_INPUT, "compressed file cut short, behind byte %zu of its contents",
+                      file->size);
+}
+
+/* What follows is compressed by gzip or zlib: keep what it holds. */
+static enum status image_bytes_unpack(struct image_bytes *file, struct error *error)
+{
+    struct image_bytes unpacked = {.was_packed = true};
+    enum status status = inflate_all(file->bytes + file->at, file->size - file->at, &unpacked, error);
+    free(file->bytes);
+    *file = unpacked;
+    return status;
+}
+
+static bool is_packed(const unsigned char *bytes, size_t size)
+{
+    return size >= 2 && bytes[0] == 0x1f && bytes[1] == 0x8b;
+}
+
+static bool goes_on(const char *text, size_t size)
+{
+    const unsigned char *bytes = (const unsigned char *)text;
+    bool swapped;
+    return is_packed(bytes, size) || memcmp(bytes, "NRRD", 4) == 0 || metaimage_begins(bytes) ||
+           nifti_version(bytes, &swapped) > 0;
+}
+
+/* Read a file out of gzip; of what is no image, unless `any` is wanted, only the beginning. */
+static enum status image_bytes_read(int descriptor, bool any, struct image_bytes *file, struct error *error)
+{
+    RETURN_IF_ERROR(descriptor_read_all(descriptor, SIZE_MAX, any ? NULL : goes_on, (char **)&file->bytes,
+                                        &file->size, error));
+    return is_packed(file->bytes, file->size) ? image_bytes_unpack(file, error) : STATUS_OK;
+}
+
+static void image_bytes_free(struct image_bytes *file)
+{
+    free(file->bytes);
+    *file = (struct image_bytes){0};
+}
+
+/* ---- values ---- */
 
 static const double exact_integers = 9007199254740992.0; /* 2^53: all up to there are doubles */
-static const char pair_magic[] = "ni1";
+
+/* Move to the first of `size` bytes of values. */
+static enum status skip(struct image_bytes *file, const struct image_layout *layout, size_t size,
+                        struct error *error)
+{
+    for (int64_t line = 0; line < layout->skip_lines && file->at < file->size; line++) {
+        const char *text = (const char *)file->bytes + file->at,
+                   *end = memchr(text, '\n', file->size - file->at);
+        file->at = end != NULL ? file->at + (size_t)(end + 1 - text) : file->size;
+    }
+    if (layout->encoding == IMAGE_PACKED && !(layout->data_file[0] != '\0' && file->was_packed)) {
+        RETURN_IF_ERROR(image_bytes_unpack(file, error));
+    }
+    size_t left = file->size - file->at;
+    if (layout->skip_bytes < 0) {
+        if (left < size) {
+            return fail(error, STATUS_INPUT, "cut short: the header says %zu bytes of data", size);
+        }
+        file->at = file->size - size;
+    } else if ((size_t)layout->skip_bytes > left) {
+        return fail(error, STATUS_INPUT, "cut short: %zu bytes, the header says that data begin at byte %zu",
+                    file->size, file->at + (size_t)layout->skip_bytes);
+    } else {
+        file->at += (size_t)layout->skip_bytes;
+    }
+    return STATUS_OK;
+}
+
+/* Read at most `count` numbers of text between blanks; *got: how many there are, and one if there are more.
+ */
+static enum status read_words(const struct image_bytes *file, const struct nifti_type *type, size_t count,
+                              double *values, size_t *got, struct error *error)
+{
+    const char *at = (const char *)file->bytes + file->at, *end = (const char *)file->bytes + file->size;
+    bool whole = type->most > type->least;
+    for (*got = 0; *got <= count; ++*got) {
+        char *behind;
+        at += strspn(at, " \t\r\n,");
+        if (at == end || *got == count) {
+            *got += at < end;
+            return STATUS_OK;
+        }
+        double value = strtod(at, &behind);
+        if (behind == at || (behind < end && strchr(" \t\r\n,", *behind) == NULL) ||
+            (whole && !(value == floor(value) && value >= type->least && value <= type->most))) {
+            return fail(error, STATUS_INPUT, "value %zu, '%.*s': not of the type %s", *got,
+                        (int)strcspn(at, " \t\r\n,") < 20 ? (int)strcspn(at, " \t\r\n,") : 20, at,
+                        type->name);
+        }
+        values[*got] = value;
+        at = behind;
+    }
+    return STATUS_OK;
+}
+
+/* Read the data: `count` values, and nothing behind them. */
+static enum status read_values(struct image_bytes *file, const struct image_layout *layout, size_t count,
+                               struct image *image, struct error *error)
+{
+    size_t size = (size_t)layout->type->bytes, got;
+    bool is_text = layout->encoding == IMAGE_ASCII;
+    RETURN_IF_ERROR(skip(file, layout, count * size, error));
+    size_t left = file->size - file->at, most = is_text ? left / 2 + 1 : left / size;
+    RETURN_IF_ERROR(RESIZE_ARRAY(&image->values, (int64_t)(count < most ? count : most), error));
+    if (is_text) {
+        RETURN_IF_ERROR(read_words(file, layout->type, count, image->values, &got, error));
+    } else {
+        got = left > count * size ? count + 1 : most;
+    }
+    if (got < count) {
+        return fail(error, STATUS_INPUT, "cut short: %zu values, the header says %zu", got, count);
+    }
+    if (got > count) {
+        return fail(error, STATUS_INPUT,
+                    "more data than %zu values, as the header says: it lies about size or type", count);
+    }
+    if (!is_text) {
+        nifti_get(layout->type, file->bytes + file->at, layout->swapped, count, image->values);
+    }
+    return STATUS_OK;
+}
+
+static enum status check_exact(const struct nifti_type *type, size_t count, const double *values,
+                               struct error *error)
+{
+    for (size_t i = 0; i < count && type->most > exact_integers; i++) {
+        if (fabs(values[i]) > exact_integers) {
+            return fail(error, STATUS_INPUT, "a value of %.0f: whole numbers beyond 2^53 are not read",
+                        values[i]);
+        }
+    }
+    return STATUS_OK;
+}
+
+/* Reorder from one volume for each component to all components of each voxel. */
+static enum status interleave(struct image *image, struct error *error)
+{
+    size_t voxels = image_voxels(image), components = image->components;
+    double *values = NULL;
+    RETURN_IF_ERROR(RESIZE_ARRAY(&values, (int64_t)(voxels * components), error));
+    for (size_t c = 0; c < components; c++) {
+        for (size_t v = 0; v < voxels; v++) {
+            values[v * components + c] = image->values[c * voxels + v];
+        }
+    }
+    free(image->values);
+    image->values = values;
+    return STATUS_OK;
+}
+
+static void turn_vector(const double turn[3][3], size_t components, double *vector)
+{
+    double before[3];
+    memcpy(before, vector, components * sizeof *vector);
+    for (size_t r = 0; r < components; r++) {
+        vector[r] = 0;
+        for (size_t c = 0; c < components; c++) {
+            vector[r] += turn[r][c] != 0 ? turn[r][c] * before[c] : 0; /* no NaN of another component */
+        }
+    }
+}
+
+/* Read the values of an image whose sizes and scaling are set, and check that nothing follows them. */
+static enum status image_values_read(struct image_bytes *file, const struct image_layout *layout,
+                                     struct image *image, struct error *error)
+{
+    size_t components = image->components, count = image_voxels(image) * components;
+    RETURN_IF_ERROR(read_values(file, layout, count, image, error));
+    RETURN_IF_ERROR(check_exact(layout->type, count, image->values, error));
+    if (!layout->together && components > 1) {
+        RETURN_IF_ERROR(interleave(image, error));
+    }
+    for (size_t i = 0; i < count && (image->slope != 1 || image->inter != 0); i++) {
+        image->values[i] = image->slope * image->values[i] + image->inter;
+    }
+    for (size_t v = 0; v < count && layout->turned; v += components) {
+        turn_vector(layout->turn, components, image->values + v);
+    }
+    return image_segments_merge(image, error);
+}
 
 static enum status fail_foreign(const unsigned char *bytes, size_t size, struct error *error)
 {
@@ -37,124 +262,55 @@ static enum status fail_foreign(const unsigned char *bytes, size_t size, struct 
                             "header's file");
 }
 
-/* *pair: the data are in a file of their own. */
-static enum status check_magic(const unsigned char *bytes, int version, bool *pair, struct error *error)
+/* ---- places ---- */
+
+static double column_length(double m[3][4], int c)
 {
-    const char *magic = (const char *)bytes + (version == 1 ? 344 : 4);
-    *pair = memcmp(magic, version == 1 ? pair_magic : "ni2", 4) == 0;
-    if (*pair || memcmp(magic, version == 1 ? "n+1" : "n+2", 4) == 0) {
-        return STATUS_OK;
-    }
-    return version == 1 ? fail(error, STATUS_INPUT,
-                               "is an ANALYZE 7.5 header, which knows no orientation: convert it to NIfTI")
-                        : fail(error, STATUS_INPUT, "header: no mark of NIfTI-2: damaged");
+    return sqrt(m[0][c] * m[0][c] + m[1][c] * m[1][c] + m[2][c] * m[2][c]);
 }
 
-static enum status read_header(struct image_bytes *file, struct nifti *header, struct image *image,
-                               struct error *error)
+/* The step across an image of one slice has no meaning: make it as long as the first one if it is zero. */
+static void complete_slice(double m[3][4])
 {
-    bool swapped = false, pair;
-    int version = file->size >= 4 ? nifti_version(file->bytes, &swapped) : 0;
-    if (version == 0) {
-        return fail_foreign(file->bytes, file->size, error);
+    if (column_length(m, 2) > 0) {
+        return;
     }
-    file->at = version == 1 ? NIFTI1_HEADER : NIFTI2_HEADER;
-    if (file->size < file->at) {
-        return fail(error, STATUS_INPUT, "cut short: %zu bytes of a header of %zu", file->size, file->at);
+    double across[3], length = 0;
+    for (int i = 0; i < 3; i++) {
+        int next = (i + 1) % 3, last = (i + 2) % 3;
+        across[i] = m[next][0] * m[last][1] - m[next][1] * m[last][0];
+        length += across[i] * across[i];
     }
-    RETURN_IF_ERROR(check_magic(file->bytes, version, &pair, error));
-    nifti_decode(file->bytes, version, swapped, header, image);
-    header->pair = pair;
-    return STATUS_OK;
+    for (int i = 0; i < 3 && length > 0; i++) {
+        m[i][2] = across[i] / sqrt(length) * column_length(m, 0);
+    }
 }
 
-/* Check sizes and components: their product fits into memory sizes. */
-static enum status check_sizes(const struct nifti *header, const struct image_layout *layout,
-                               struct image *image, struct error *error)
+static bool is_sound(double m[3][4])
 {
-    const struct nifti_type *type = layout->type;
-    double size[8] = {0, 1, 1, 1, 1, 1, 1, 1};
-    if (!(header->dim[0] >= 2 && header->dim[0] <= 7)) {
-        return fail(error, STATUS_INPUT, "header: %.0f dimensions: an image has 2 or 3", header->dim[0]);
-    }
-    int dimensions = (int)header->dim[0];
-    for (int i = 1; i <= dimensions; i++) {
-        size[i] = header->dim[i];
-        if (!(size[i] >= 1 && size[i] <= INT32_MAX)) {
-            return fail(error, STATUS_INPUT,
-                        "header: size %.0f along dimension %d: from 1 to 2^31 - 1 is possible", size[i], i);
+    double volume = column_length(m, 0) * column_length(m, 1) * column_length(m, 2);
+    for (int r = 0; r < 3; r++) {
+        if (!isfinite(m[r][3])) {
+            return false;
         }
     }
-    if (size[4] == 3 && size[5] <= 1) { /* a vector at each voxel, as other programs write it */
-        size[5] = size[4];
-        size[4] = 1;
-    }
-    if (size[4] > 1) {
-        return fail(error, STATUS_INPUT,
-                    "holds %.0f volumes (4-D): choose one and save it as an image of its own", size[4]);
-    }
-    if (size[6] > 1 || size[7] > 1) {
-        return fail(error, STATUS_INPUT, "header: %d dimensions: one value or vector at each voxel is read",
-                    dimensions);
-    }
-    if (size[5] > 1 && type->components > 1) {
-        return fail(error, STATUS_INPUT, "header: vectors of colours");
-    }
-    return header_sizes(size + 1, size[5] * type->components, false, layout, image, error);
+    return isfinite(volume) && volume > 0 && fabs(determinant3(m[0], m[1], m[2])) > 1e-6 * volume;
 }
 
-/* Check a header; set the image and the layout of the values, which are `taken` bytes further on. */
-static enum status check_header(const struct nifti *header, int64_t taken, struct image *image,
-                                struct image_layout *layout, struct error *error)
+enum status image_place(struct image *image, double matrix[3][4], const char *form, struct error *error)
 {
-    const struct nifti_type *type = nifti_type((int)header->datatype);
-    double least = header->pair ? 0 : header->version == 1 ? NIFTI1_HEADER + 4 : NIFTI2_HEADER + 4;
-    if (type == NULL) {
-        return fail(
-            error, STATUS_INPUT,
-            "header: values of type %d: integers of 8 to 64 bits, floats of 32 and 64, RGB and RGBA are read",
-            (int)header->datatype);
+    if (image->size[2] == 1) {
+        complete_slice(matrix);
     }
-    int bits = 8 * type->bytes * type->components;
-    if (header->bits != 0 && header->bits != bits) {
-        return fail(error, STATUS_INPUT, "header: %.0f bits a voxel, but %s has %d", header->bits, type->name,
-                    bits);
+    if (!is_sound(matrix)) {
+        return fail(error, STATUS_INPUT, "header: %s gives the voxels no place: not finite, or no volume",
+                    form);
     }
-    if (header->offset != 0 && !(header->offset >= least && header->offset <= exact_integers &&
-                                 header->offset == floor(header->offset))) {
-        return fail(error, STATUS_INPUT, "header: data from byte %g: must be a whole number, at least %.0f",
-                    header->offset, least);
-    }
-    if (isinf(header->slope) || isinf(header->inter)) {
-        return fail(error, STATUS_INPUT,
-                    "header: scaling of the values is not finite (scl_slope, scl_inter)");
-    }
-    image->slope = 1;
-    if (header->slope != 0 && !isnan(header->slope) && type->components == 1) {
-        image->slope = header->slope;
-        image->inter = isnan(header->inter) ? 0 : header->inter;
-    }
-    layout->type = type;
-    layout->swapped = header->swapped;
-    layout->together = type->components > 1;
-    layout->skip_bytes = (int64_t)fmax(header->offset, least) - (header->pair ? 0 : taken);
-    return check_sizes(header, layout, image, error);
-}
-
-/* The file of data of the header NAME.hdr is NAME.img, that of NAME.hdr.gz is NAME.img.gz. */
-static enum status name_partner(const char *name, struct image_layout *layout, struct error *error)
-{
-    const char *base = strrchr(name, '/') != NULL ? strrchr(name, '/') + 1 : name,
-               *end = strstr(base, ".hdr");
-    if (end == NULL || strlen(base) >= sizeof layout->data_file ||
-        !(strcmp(end, ".hdr") == 0 || strcmp(end, ".hdr.gz") == 0)) {
-        return fail(error, STATUS_INPUT,
-                    "is a header whose data are in a file of their own: give its name, which ends in .hdr");
-    }
-    snprintf(layout->data_file, sizeof layout->data_file, "%s", base);
-    memcpy(layout->data_file + (end - base), ".img", 4);
+    memcpy(image->to_world, matrix, sizeof image->to_world);
     return STATUS_OK;
 }
+
+/* ---- files ---- */
 
 /* Open a file of data in the folder of the header (its first `folder` bytes) or below: links that lead
  * elsewhere are refused. */
@@ -199,33 +355,11 @@ static enum status read_partner(const char *name, const struct image_layout *lay
     return fail_in(error, status, "its data, %s", partner);
 }
 
-static enum status nifti_header(struct image_bytes *file, const char *name, struct image *image,
-                                struct image_layout *layout, struct error *error)
-{
-    struct nifti header;
-    RETURN_IF_ERROR(read_header(file, &header, image, error));
-    RETURN_IF_ERROR(check_header(&header, (int64_t)file->at, image, layout, error));
-    RETURN_IF_ERROR(nifti_space(&header, image, error));
-    return header.pair ? name_partner(name, layout, error) : STATUS_OK;
-}
-
-/* A header of text that names another file is a file itself. */
-static enum status check_detached(const struct image *image, const struct image_layout *layout,
-                                  const char *name, struct error *error)
-{
-    bool known = text_ends(name, ".nhdr") || text_ends(name, ".nrrd") || text_ends(name, ".mhd") ||
-                 text_ends(name, ".mha");
-    return layout->data_file[0] == '\0' || image->format <= IMAGE_NIFTI || known
-               ? STATUS_OK
-               : fail(error, STATUS_INPUT,
-                      "is a header whose data are in a file of their own: give its name, which ends in .nhdr "
-                      "or .mhd");
-}
-
 static enum status read_file(struct image_bytes *file, const char *name, struct image *image,
                              struct error *error)
 {
     struct image_layout layout = {0};
+    bool swapped;
     image->slope = 1;
     image->version = 1;
     if (file->size >= 4 && memcmp(file->bytes, "NRRD", 4) == 0) {
@@ -234,6 +368,8 @@ static enum status read_file(struct image_bytes *file, const char *name, struct 
     } else if (file->size >= 4 && metaimage_begins(file->bytes)) {
         image->format = IMAGE_METAIMAGE;
         RETURN_IF_ERROR(metaimage_header(file, image, &layout, error));
+    } else if (file->size < 4 || nifti_version(file->bytes, &swapped) == 0) {
+        return fail_foreign(file->bytes, file->size, error);
     } else {
         image->format = file->was_packed ? IMAGE_NIFTI_GZIP : IMAGE_NIFTI;
         RETURN_IF_ERROR(nifti_header(file, name, image, &layout, error));
@@ -241,7 +377,6 @@ static enum status read_file(struct image_bytes *file, const char *name, struct 
     if (layout.skip_bytes < 0 && layout.encoding != IMAGE_RAW) {
         return fail(error, STATUS_INPUT, "header: a skip of -1 goes with raw data only");
     }
-    RETURN_IF_ERROR(check_detached(image, &layout, name, error));
     return layout.data_file[0] != '\0' ? read_partner(name, &layout, image, error)
                                        : image_values_read(file, &layout, image, error);
 }

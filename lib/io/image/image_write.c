@@ -10,13 +10,6 @@
 
 /* ---- headers of text ---- */
 
-/* The first name of the image's type in a format: 0 NRRD, 1 MetaImage. */
-static void print_type(FILE *file, const struct image *image, int format)
-{
-    const char *names = nifti_type(image->datatype)->names[format];
-    fwrite(names, 1, strcspn(names, "|"), file);
-}
-
 static void print_vector(FILE *file, const struct image *image, int column)
 {
     fprintf(file, " (%.15g,%.15g,%.15g)", 0.0 - 1e3 * image->to_world[0][column],
@@ -37,9 +30,10 @@ static void nrrd_print(const struct image *image, const char *data_file, FILE *f
     if (image->description[0] != '\0') {
         fprintf(file, "content: %s\n", image->description);
     }
-    fputs("type: ", file);
-    print_type(file, image, 0);
-    fprintf(file, "\ndimension: %d\nspace: left-posterior-superior\nsizes:", several ? 4 : 3);
+    const char *names = nifti_type(image->datatype)->nrrd;
+    fprintf(file,
+            "type: %.*s\ndimension: %d\nspace: left-posterior-superior\nsizes:", (int)strcspn(names, "|"),
+            names, several ? 4 : 3);
     if (several) {
         fprintf(file, " %zu", image->components);
     }
@@ -76,9 +70,9 @@ static void metaimage_print(const struct image *image, const char *data_file, FI
     if (image->components > 1) {
         fprintf(file, "ElementNumberOfChannels = %zu\n", image->components);
     }
-    fputs("ElementType = ", file);
-    print_type(file, image, 1);
-    fprintf(file, "\nElementDataFile = %s\n", data_file != NULL ? data_file : "LOCAL");
+    const char *names = nifti_type(image->datatype)->metaimage;
+    fprintf(file, "ElementType = %.*s\nElementDataFile = %s\n", (int)strcspn(names, "|"), names,
+            data_file != NULL ? data_file : "LOCAL");
 }
 
 /* ---- all formats ---- */
@@ -164,12 +158,6 @@ static enum status write_values(const struct image *image, const unsigned char *
     return STATUS_OK;
 }
 
-/* A type that holds scaled values of a type. */
-static int real_type(const struct nifti_type *type)
-{
-    return type->code == IMAGE_FLOAT32 || type->bytes < 4 ? IMAGE_FLOAT32 : IMAGE_FLOAT64;
-}
-
 /* The image without scaling, which headers of text do not know; its values are those of the image. */
 static enum status unscaled(const struct image *image, struct image *plain, struct error *error)
 {
@@ -179,7 +167,9 @@ static enum status unscaled(const struct image *image, struct image *plain, stru
                     image->datatype);
     }
     *plain = *image;
-    plain->datatype = is_scaled(image, type) ? real_type(type) : image->datatype;
+    if (is_scaled(image, type)) { /* a type that holds scaled values */
+        plain->datatype = type->code == IMAGE_FLOAT32 || type->bytes < 4 ? IMAGE_FLOAT32 : IMAGE_FLOAT64;
+    }
     plain->slope = 1;
     plain->inter = 0;
     return STATUS_OK;
@@ -195,7 +185,7 @@ enum status image_write_data(const struct image *image, FILE *file, struct error
 enum status image_write(const struct image *image, FILE *file, enum image_format format,
                         const char *data_file, struct error *error)
 {
-    unsigned char header[NIFTI2_HEADER + 4];
+    unsigned char header[NIFTI_MOST];
     struct image plain;
     RETURN_IF_ERROR(unscaled(image, &plain, error));
     if (format == IMAGE_NRRD || format == IMAGE_METAIMAGE) {

@@ -140,16 +140,10 @@ static enum status add_labels(struct label_table *table, char *labels, int32_t n
 /* Add one line, which is modified. */
 static enum status add_row(struct label_table *table, char *line, struct error *error)
 {
-    char *word[4] = {NULL};
+    char *word[4], *next;
     int count = 0;
-    for (char *rest = line; rest != NULL && count < 4;) {
-        char *next = strsep(&rest, " \t");
-        if (*next == '#') {
-            break;
-        }
-        if (*next != '\0') {
-            word[count++] = next;
-        }
+    while (count < 4 && *(next = text_word(&line)) != '\0' && *next != '#') {
+        word[count++] = next;
     }
     if (count == 0) {
         return STATUS_OK;

@@ -1,5 +1,5 @@
 /* The headers of NIfTI. */
-#include "io/image/image_private.h"
+#include "io/image/text_header.h"
 
 #include "base/vector.h"
 
@@ -7,12 +7,18 @@
 #include <stddef.h>
 #include <string.h>
 
-/* ---- the map from voxels to world coordinates: sform, qform, voxel sizes ---- */
+enum { NIFTI1_HEADER = 348, NIFTI2_HEADER = 540 };
 
-static double column_length(double m[3][4], int c)
-{
-    return sqrt(m[0][c] * m[0][c] + m[1][c] * m[1][c] + m[2][c] * m[2][c]);
-}
+/* The fields that are used, in the file's units. */
+struct nifti {
+    int version;
+    bool swapped;
+    bool pair; /* the data are in a file of their own */
+    double dim[8], datatype, bits, intent, pixdim[8], offset, slope, inter, qform, sform, units;
+    double quatern[3], qoffset[3], srow[3][4];
+};
+
+/* ---- the map from voxels to world coordinates: sform, qform, voxel sizes ---- */
 
 /* NIfTI-1 standard, "quaternion representation of rotation matrix"; lengths and signs in pixdim. */
 static void from_qform(const struct nifti *header, double m[3][4])
@@ -41,7 +47,8 @@ static bool quaternion_of(double matrix[3][4], double quatern[3], double pixdim[
 {
     double r[3][3];
     for (int c = 0; c < 3; c++) {
-        pixdim[1 + c] = column_length(matrix, c);
+        pixdim[1 + c] =
+            sqrt(matrix[0][c] * matrix[0][c] + matrix[1][c] * matrix[1][c] + matrix[2][c] * matrix[2][c]);
     }
     pixdim[0] = determinant3(matrix[0], matrix[1], matrix[2]) < 0 ? -1 : 1;
     for (int c = 0; c < 3; c++) {
@@ -74,67 +81,11 @@ static bool quaternion_of(double matrix[3][4], double quatern[3], double pixdim[
     return true;
 }
 
-/* The step across an image of one slice has no meaning: make it as long as the first one if it is zero. */
-static void complete_slice(double m[3][4])
-{
-    if (column_length(m, 2) > 0) {
-        return;
-    }
-    double across[3], length = 0;
-    for (int i = 0; i < 3; i++) {
-        int next = (i + 1) % 3, last = (i + 2) % 3;
-        across[i] = m[next][0] * m[last][1] - m[next][1] * m[last][0];
-        length += across[i] * across[i];
-    }
-    for (int i = 0; i < 3 && length > 0; i++) {
-        m[i][2] = across[i] / sqrt(length) * column_length(m, 0);
-    }
-}
-
-static bool is_sound(double m[3][4])
-{
-    double volume = column_length(m, 0) * column_length(m, 1) * column_length(m, 2);
-    for (int r = 0; r < 3; r++) {
-        if (!isfinite(m[r][3])) {
-            return false;
-        }
-    }
-    return isfinite(volume) && volume > 0 && fabs(determinant3(m[0], m[1], m[2])) > 1e-6 * volume;
-}
-
-/* Largest distance between the positions of the image's corners under two maps. */
-static double disagreement(const struct image *image, double a[3][4], double b[3][4])
-{
-    double most = 0;
-    for (int corner = 0; corner < 8; corner++) {
-        double voxel[3], at_a[3], at_b[3];
-        for (int i = 0; i < 3; i++) {
-            voxel[i] = corner >> i & 1 ? (double)(image->size[i] - 1) : 0;
-        }
-        image_map(&a[0][0], voxel, at_a);
-        image_map(&b[0][0], voxel, at_b);
-        most = fmax(most, hypot(hypot(at_a[0] - at_b[0], at_a[1] - at_b[1]), at_a[2] - at_b[2]));
-    }
-    return most;
-}
-
-enum status image_place(struct image *image, double matrix[3][4], const char *form, struct error *error)
-{
-    if (image->size[2] == 1) {
-        complete_slice(matrix);
-    }
-    if (!is_sound(matrix)) {
-        return fail(error, STATUS_INPUT, "header: %s gives the voxels no place: not finite, or no volume",
-                    form);
-    }
-    memcpy(image->to_world, matrix, sizeof image->to_world);
-    return STATUS_OK;
-}
-
-enum status nifti_space(const struct nifti *header, struct image *image, struct error *error)
+/* Set image->to_world, unit and space from a header, and note assumptions. */
+static enum status nifti_space(const struct nifti *header, struct image *image, struct error *error)
 {
     static const double unit[] = {1e-3, 1, 1e-3, 1e-6};
-    double matrix[3][4] = {{0}}, other[3][4];
+    double matrix[3][4] = {{0}};
     const char *form = "its voxel sizes (pixdim)";
     int units = (int)header->units & 7;
     if (units > 3) {
@@ -158,17 +109,6 @@ enum status nifti_space(const struct nifti *header, struct image *image, struct 
             matrix[i][i] = fabs(header->pixdim[1 + i]);
         }
         image_note(image, "has neither sform nor qform: first voxel at the origin, axes taken to be RAS");
-    }
-    if (header->sform > 0 && header->qform > 0) {
-        from_qform(header, other);
-        if (image->size[2] == 1) {
-            complete_slice(other);
-            complete_slice(matrix);
-        }
-        double half = 0.5 * fmin(column_length(matrix, 0), column_length(matrix, 1));
-        if (!(disagreement(image, matrix, other) <= half)) {
-            image_note(image, "sform and qform differ by more than half a voxel: sform taken");
-        }
     }
     for (int i = 0; i < 12; i++) {
         matrix[i / 4][i % 4] *= image->unit;
@@ -208,7 +148,8 @@ enum { FIELDS = sizeof fields / sizeof *fields };
 
 static const int description_offset[2] = {148, 240}, intent_name_offset[2] = {328, 508},
                  magic_offset[2] = {344, 4};
-static const char magic1[] = "n+1", magic2[] = "n+2\0\r\n\032\n";
+static const char magic1[] = "n+1",
+                  magic2[] = "n+2\0\r\n\032\n"; /* 'i' for '+': data in a file of their own */
 
 int nifti_version(const unsigned char *bytes, bool *swapped)
 {
@@ -249,10 +190,19 @@ void image_describe(struct image *image, const char *text)
     copy_text(image->description, (const unsigned char *)text, length < most ? length : most);
 }
 
-void nifti_decode(const unsigned char *bytes, int version, bool swapped, struct nifti *header,
-                  struct image *image)
+/* Decode a whole header of that version. STATUS_INPUT without the mark of NIfTI. */
+static enum status nifti_decode(const unsigned char *bytes, int version, bool swapped, struct nifti *header,
+                                struct image *image, struct error *error)
 {
-    *header = (struct nifti){.version = version, .swapped = swapped};
+    char magic[4];
+    memcpy(magic, bytes + magic_offset[version - 1], sizeof magic);
+    *header = (struct nifti){.version = version, .swapped = swapped, .pair = magic[1] == 'i'};
+    magic[1] = header->pair ? '+' : magic[1];
+    if (memcmp(magic, version == 1 ? magic1 : magic2, sizeof magic) != 0) {
+        return fail(error, STATUS_INPUT,
+                    version == 1 ? "is an ANALYZE 7.5 header, which knows no orientation: convert it to NIfTI"
+                                 : "header: no mark of NIfTI-2: damaged");
+    }
     for (int f = 0; f < FIELDS; f++) {
         nifti_get(nifti_type(fields[f].at[version - 1].type), bytes + fields[f].at[version - 1].offset,
                   swapped, fields[f].count, (double *)(void *)((char *)header + fields[f].member));
@@ -261,7 +211,114 @@ void nifti_decode(const unsigned char *bytes, int version, bool swapped, struct 
     image->intent = (int)header->intent;
     copy_text(image->description, bytes + description_offset[version - 1], 80);
     copy_text(image->intent_name, bytes + intent_name_offset[version - 1], 16);
+    return STATUS_OK;
 }
+
+/* Check sizes and components: their product fits into memory sizes. */
+static enum status check_sizes(const struct nifti *header, const struct image_layout *layout,
+                               struct image *image, struct error *error)
+{
+    const struct nifti_type *type = layout->type;
+    double size[8] = {0, 1, 1, 1, 1, 1, 1, 1};
+    if (!(header->dim[0] >= 2 && header->dim[0] <= 7)) {
+        return fail(error, STATUS_INPUT, "header: %.0f dimensions: an image has 2 or 3", header->dim[0]);
+    }
+    int dimensions = (int)header->dim[0];
+    for (int i = 1; i <= dimensions; i++) {
+        size[i] = header->dim[i];
+        if (!(size[i] >= 1 && size[i] <= INT32_MAX)) {
+            return fail(error, STATUS_INPUT,
+                        "header: size %.0f along dimension %d: from 1 to 2^31 - 1 is possible", size[i], i);
+        }
+    }
+    if (size[4] == 3 && size[5] <= 1) { /* a vector at each voxel, as other programs write it */
+        size[5] = size[4];
+        size[4] = 1;
+    }
+    if (size[4] > 1) {
+        return fail(error, STATUS_INPUT,
+                    "holds %.0f volumes (4-D): choose one and save it as an image of its own", size[4]);
+    }
+    if (size[6] > 1 || size[7] > 1) {
+        return fail(error, STATUS_INPUT, "header: %d dimensions: one value or vector at each voxel is read",
+                    dimensions);
+    }
+    if (size[5] > 1 && type->components > 1) {
+        return fail(error, STATUS_INPUT, "header: vectors of colours");
+    }
+    return header_sizes(size + 1, size[5] * type->components, false, layout, image, error);
+}
+
+/* Check a header; set the image and the layout of the values, which are `taken` bytes further on. */
+static enum status check_header(const struct nifti *header, int64_t taken, struct image *image,
+                                struct image_layout *layout, struct error *error)
+{
+    const struct nifti_type *type = nifti_type((int)header->datatype);
+    double least = header->pair ? 0 : header->version == 1 ? NIFTI1_HEADER + 4 : NIFTI2_HEADER + 4;
+    if (type == NULL) {
+        return fail(
+            error, STATUS_INPUT,
+            "header: values of type %d: integers of 8 to 64 bits, floats of 32 and 64, RGB and RGBA are read",
+            (int)header->datatype);
+    }
+    int bits = 8 * type->bytes * type->components;
+    if (header->bits != 0 && header->bits != bits) {
+        return fail(error, STATUS_INPUT, "header: %.0f bits a voxel, but %s has %d", header->bits, type->name,
+                    bits);
+    }
+    if (header->offset != 0 &&
+        !(header->offset >= least && header->offset <= 9e15 && header->offset == floor(header->offset))) {
+        return fail(error, STATUS_INPUT, "header: data from byte %g: must be a whole number, at least %.0f",
+                    header->offset, least);
+    }
+    if (isinf(header->slope) || isinf(header->inter)) {
+        return fail(error, STATUS_INPUT,
+                    "header: scaling of the values is not finite (scl_slope, scl_inter)");
+    }
+    image->slope = 1;
+    if (header->slope != 0 && !isnan(header->slope) && type->components == 1) {
+        image->slope = header->slope;
+        image->inter = isnan(header->inter) ? 0 : header->inter;
+    }
+    layout->type = type;
+    layout->swapped = header->swapped;
+    layout->together = type->components > 1;
+    layout->skip_bytes = (int64_t)fmax(header->offset, least) - (header->pair ? 0 : taken);
+    return check_sizes(header, layout, image, error);
+}
+
+/* The file of data of the header NAME.hdr is NAME.img, that of NAME.hdr.gz is NAME.img.gz. */
+static enum status name_partner(const char *name, struct image_layout *layout, struct error *error)
+{
+    const char *base = strrchr(name, '/') != NULL ? strrchr(name, '/') + 1 : name,
+               *end = strstr(base, ".hdr");
+    if (end == NULL || strlen(base) >= sizeof layout->data_file ||
+        !(strcmp(end, ".hdr") == 0 || strcmp(end, ".hdr.gz") == 0)) {
+        return fail(error, STATUS_INPUT,
+                    "is a header whose data are in a file of their own: give its name, which ends in .hdr");
+    }
+    snprintf(layout->data_file, sizeof layout->data_file, "%s", base);
+    memcpy(layout->data_file + (end - base), ".img", 4);
+    return STATUS_OK;
+}
+
+enum status nifti_header(struct image_bytes *file, const char *name, struct image *image,
+                         struct image_layout *layout, struct error *error)
+{
+    struct nifti header;
+    bool swapped = false;
+    int version = nifti_version(file->bytes, &swapped);
+    file->at = version == 1 ? NIFTI1_HEADER : NIFTI2_HEADER;
+    if (file->size < file->at) {
+        return fail(error, STATUS_INPUT, "cut short: %zu bytes of a header of %zu", file->size, file->at);
+    }
+    RETURN_IF_ERROR(nifti_decode(file->bytes, version, swapped, &header, image, error));
+    RETURN_IF_ERROR(check_header(&header, (int64_t)file->at, image, layout, error));
+    RETURN_IF_ERROR(nifti_space(&header, image, error));
+    return header.pair ? name_partner(name, layout, error) : STATUS_OK;
+}
+
+/* ---- writing ---- */
 
 static void sizes_of(const struct image *image, const struct nifti_type *type, double dim[8])
 {
@@ -286,7 +343,7 @@ static int version_of(const struct image *image)
     return fits && image->version != 2 ? 1 : 2;
 }
 
-size_t nifti_encode(const struct image *image, unsigned char bytes[NIFTI2_HEADER + 4])
+size_t nifti_encode(const struct image *image, unsigned char bytes[NIFTI_MOST])
 {
     const struct nifti_type *type = nifti_type(image->datatype);
     int version = version_of(image), size = version == 1 ? NIFTI1_HEADER : NIFTI2_HEADER;
@@ -319,7 +376,7 @@ size_t nifti_encode(const struct image *image, unsigned char bytes[NIFTI2_HEADER
             header.qoffset[r] = header.srow[r][3];
         }
     }
-    memset(bytes, 0, NIFTI2_HEADER + 4);
+    memset(bytes, 0, NIFTI_MOST);
     bytes[0] = (unsigned char)(size & 255);
     bytes[1] = (unsigned char)(size >> 8);
     for (int f = 0; f < FIELDS; f++) {

@@ -60,58 +60,33 @@ static enum status set_centers(void *context, const struct text_header *header, 
     return STATUS_OK;
 }
 
-/* Take a vector "(1,0,0)" of the space. */
-static bool take_vector(const struct nrrd *nrrd, const char **at, double vector[3])
-{
-    *at += strspn(*at, " \t");
-    bool whole = nrrd->space_dimension > 0 && *(*at)++ == '(' &&
-                 header_numbers(at, (int)nrrd->space_dimension, vector) && **at == ')';
-    *at += whole;
-    return whole;
-}
-
-static enum status set_directions(void *context, const struct text_header *header, struct error *error)
+/* Vectors "(1,0,0)" of the space: the origin, the measurement frame; or for each dimension one, or none. */
+static enum status set_vectors(void *context, const struct text_header *header, struct error *error)
 {
     struct nrrd *nrrd = context;
+    bool origin = header_is("space origin", header->key), axes = header_is("space directions", header->key);
+    bool good = nrrd->space_dimension > 0;
+    int64_t count = origin ? 1 : axes ? nrrd->dimension : nrrd->space_dimension;
     const char *at = header->value;
-    for (int a = 0; a < nrrd->dimension; a++) {
+    for (int v = 0; v < count && good; v++) {
+        double *vector = origin ? nrrd->origin : axes ? nrrd->direction[v] : nrrd->frame[v];
         at += strspn(at, " \t");
-        if (strncasecmp(at, "none", 4) == 0) {
+        if (axes && strncasecmp(at, "none", 4) == 0) {
             at += 4;
             continue;
         }
-        if (!take_vector(nrrd, &at, nrrd->direction[a])) {
-            return header_fail(
-                header, "a vector (X,Y,Z) of the space, or none, for each dimension is expected", error);
-        }
-        nrrd->has_direction[a] = nrrd->has_directions = true;
+        good = *at++ == '(' && header_numbers(&at, (int)nrrd->space_dimension, vector) && *at == ')' &&
+               (origin || axes || isfinite(vector[0] + vector[1] + vector[2]));
+        at += good;
+        nrrd->has_direction[v] = nrrd->has_direction[v] || axes;
+        nrrd->has_directions = nrrd->has_directions || axes;
     }
-    return nrrd->has_directions && *at == '\0'
+    return good && *at == '\0' && (!axes || nrrd->has_directions)
                ? STATUS_OK
-               : header_fail(header, "a vector of the space for each dimension is expected", error);
-}
-
-static enum status set_origin(void *context, const struct text_header *header, struct error *error)
-{
-    struct nrrd *nrrd = context;
-    const char *at = header->value;
-    return take_vector(nrrd, &at, nrrd->origin) && *at == '\0'
-               ? STATUS_OK
-               : header_fail(header, "a vector (X,Y,Z) of the space is expected", error);
-}
-
-static enum status set_frame(void *context, const struct text_header *header, struct error *error)
-{
-    struct nrrd *nrrd = context;
-    const char *at = header->value;
-    bool good = true;
-    for (int c = 0; c < nrrd->space_dimension && good; c++) {
-        const double *axis = nrrd->frame[c];
-        good = take_vector(nrrd, &at, nrrd->frame[c]) && isfinite(axis[0] + axis[1] + axis[2]);
-    }
-    return good && *at == '\0'
-               ? STATUS_OK
-               : header_fail(header, "a vector of the space for each of its dimensions is expected", error);
+               : header_fail(header,
+                             axes ? "a vector (X,Y,Z) of the space, or none, for each dimension is expected"
+                                  : "a vector (X,Y,Z) of the space is expected",
+                             error);
 }
 
 /* Words in quotes, each a unit of length; "" is mm: of the axes of the space or of the array. */
@@ -180,14 +155,14 @@ static const struct header_field fields[] = {
     [MINS] = {"axis mins|axismins", HEADER_VECTOR, AT(first)},
     [MAXS] = {"axis maxs|axismaxs", .set = NULL},
     [ENDIAN] = {"endian", HEADER_WORD, AT(endian), .words = "little big"},
-    [ORIGIN] = {"space origin", .set = set_origin},
+    [ORIGIN] = {"space origin", .set = set_vectors},
     {"type", HEADER_TYPE, AT(layout)},
     {"dimension", HEADER_INTEGER, AT(dimension), 2, AXES},
     {"space dimension", HEADER_INTEGER, AT(space_dimension), 2, 3},
     {"space", .set = set_space},
     {"centers|centerings", .set = set_centers},
-    {"space directions", .set = set_directions},
-    {"measurement frame", .set = set_frame},
+    {"space directions", .set = set_vectors},
+    {"measurement frame", .set = set_vectors},
     {"space units", .set = set_units},
     {"units", .set = set_units},
     {"kinds", .set = set_kinds},
@@ -196,9 +171,6 @@ static const struct header_field fields[] = {
     {"byte skip|byteskip", HEADER_INTEGER, AT(layout.skip_bytes), -1, HEADER_SKIP},
     {"data file|datafile", HEADER_FILE, AT(layout)},
     {"content", HEADER_TEXT, AT(image)},
-    {"number|block size|blocksize|min|max|old min|oldmin|old max|oldmax|labels|thicknesses|sample units|"
-     "sampleunits",
-     HEADER_LEFT},
 };
 
 enum { FIELDS = sizeof fields / sizeof *fields };
@@ -283,7 +255,6 @@ static enum status place(struct nrrd *nrrd, const struct text_header *header, st
     if (nrrd->has_directions && !header_has(header, ORIGIN)) {
         image_note(image, "has no space origin: the first voxel lies at 0");
     }
-    header_note_unknown(header, image);
     RETURN_IF_ERROR(header_sizes(size, component < 0 ? 1 : nrrd->size[component],
                                  component >= 0 && nrrd->kind[component] == COLOUR, &nrrd->layout, image,
                                  error));

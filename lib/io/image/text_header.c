@@ -1,3 +1,5 @@
+/* Headers of text, and those of MetaImage (.mha, .mhd), as ITK reads them: AnatomicalOrientation only repeats
+ * what TransformMatrix says. */
 #include "io/image/text_header.h"
 
 #include <ctype.h>
@@ -145,14 +147,6 @@ static enum status take_word(const struct text_header *header, const char *words
     return header_fail(header, why, error);
 }
 
-static enum status take_flag(const struct text_header *header, bool *flag, struct error *error)
-{
-    *flag = header->value[0] != '\0' && strchr("Tt1", header->value[0]) != NULL;
-    return *flag || (header->value[0] != '\0' && strchr("Ff0", header->value[0]) != NULL)
-               ? STATUS_OK
-               : header_fail(header, "True or False is expected", error);
-}
-
 static bool leads_up(const char *path)
 {
     for (; *path != '\0'; path += strcspn(path, "/")) {
@@ -164,8 +158,9 @@ static bool leads_up(const char *path)
     return false;
 }
 
-enum status header_data_file(const struct text_header *header, struct image_layout *layout,
-                             struct error *error)
+/* The value is the name of a file in the folder of the header or below. */
+static enum status header_data_file(const struct text_header *header, struct image_layout *layout,
+                                    struct error *error)
 {
     const char *file = header->value;
     if (strncmp(file, "LIST", 4) == 0 || strchr(file, '%') != NULL) {
@@ -196,12 +191,8 @@ static enum status take(const struct header_field *field, void *context, const s
         return header_data_file(header, at, error);
     case HEADER_WORD:
         return take_word(header, field->words, at, error);
-    case HEADER_FLAG:
-        return take_flag(header, at, error);
     case HEADER_TEXT:
         image_describe(*(struct image **)at, header->value);
-        return STATUS_OK;
-    case HEADER_LEFT:
         return STATUS_OK;
     case HEADER_SET:
         break;
@@ -214,21 +205,13 @@ enum status header_set(struct text_header *header, const struct header_field *fi
 {
     for (size_t f = 0; f < count; f++) {
         if (header_is(fields[f].keys, header->key)) {
-            uint64_t bit = (uint64_t)1 << f, given = fields[f].kind != HEADER_LEFT ? header->given : 0;
+            bool again = header_has(header, (int)f);
             RETURN_IF_ERROR(take(&fields[f], context, header, error));
-            header->given |= bit;
-            return (given & bit) == 0 ? STATUS_OK : header_fail(header, "stands twice: take one out", error);
+            header->given |= (uint64_t)1 << f;
+            return again ? header_fail(header, "stands twice: take one out", error) : STATUS_OK;
         }
     }
-    text_append(header->unknown, sizeof header->unknown, ", %.40s", header->key);
     return STATUS_OK;
-}
-
-void header_note_unknown(const struct text_header *header, struct image *image)
-{
-    if (header->unknown[0] != '\0') {
-        image_note(image, "fields that are not known, left out: %s", header->unknown + 2);
-    }
 }
 
 enum status header_sizes(const double size[3], double components, bool colour,
@@ -256,4 +239,118 @@ enum status header_sizes(const double size[3], double components, bool colour,
         image->intent = 0;
     }
     return STATUS_OK;
+}
+
+/* ---- MetaImage ---- */
+
+/* The fields of a header as they stand, in mm along left, back, up. */
+struct metaimage {
+    struct image *image;
+    struct image_layout layout;
+    int64_t dimension, channels;
+    int is_msb, element_msb; /* the newer and the older key of the byte order */
+    int is_compressed, is_binary;
+    int word; /* of those of which only one is read */
+    double size[3], spacing[3], element[3], origin[3], axes[9];
+};
+
+/* Fields of which it counts whether they are there. */
+enum { SIZE, SPACING, ELEMENT, MATRIX, ORIGIN, BINARY_MSB, ELEMENT_MSB };
+
+#define FLAG "False|F|0 True|T|1"
+#define AT(member) offsetof(struct metaimage, member)
+
+static const struct header_field fields[] = {
+    [SIZE] = {"DimSize", HEADER_VECTOR, AT(size)},
+    [SPACING] = {"ElementSpacing", HEADER_VECTOR, AT(spacing)},
+    [ELEMENT] = {"ElementSize", HEADER_VECTOR, AT(element)},
+    [MATRIX] = {"TransformMatrix|Rotation|Orientation", HEADER_MATRIX, AT(axes)},
+    [ORIGIN] = {"Offset|Position|Origin", HEADER_VECTOR, AT(origin)},
+    [BINARY_MSB] = {"BinaryDataByteOrderMSB", HEADER_WORD, AT(is_msb), .words = FLAG},
+    [ELEMENT_MSB] = {"ElementByteOrderMSB", HEADER_WORD, AT(element_msb), .words = FLAG},
+    {"ObjectType", HEADER_WORD, AT(word), .words = "Image"},
+    {"Comment", HEADER_TEXT, AT(image)},
+    {"NDims", HEADER_INTEGER, AT(dimension), 2, 3},
+    {"ElementNumberOfChannels", HEADER_INTEGER, AT(channels), 1, INT32_MAX},
+    {"ElementType", HEADER_TYPE, AT(layout)},
+    {"CompressedData", HEADER_WORD, AT(is_compressed), .words = FLAG},
+    {"BinaryData", HEADER_WORD, AT(is_binary), .words = FLAG},
+    {"HeaderSize", HEADER_INTEGER, AT(layout.skip_bytes), -1, HEADER_SKIP},
+    {"DistanceUnits", HEADER_WORD, AT(word), .words = "mm|?"},
+};
+
+bool metaimage_begins(const unsigned char bytes[4])
+{
+    static const char *const keys[] = {"Obje", "NDim", "Comm", "Bina", "DimS"};
+    for (size_t k = 0; k < sizeof keys / sizeof *keys; k++) {
+        if (strncasecmp((const char *)bytes, keys[k], 4) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static enum status place(const struct metaimage *meta, const struct text_header *header, struct error *error)
+{
+    int n = (int)meta->dimension;
+    const double *spacing =
+        header_has(header, ELEMENT) && !header_has(header, SPACING) ? meta->element : meta->spacing;
+    double size[3] = {1, 1, 1}, matrix[3][4] = {{0}};
+    static const double sign[3] = {-1e-3, -1e-3, 1e-3}; /* left, back, up in mm, to right, front, up in m */
+    struct image *image = meta->image;
+    for (int r = 0; r < n; r++) {
+        size[r] = meta->size[r];
+        for (int a = 0; a < n; a++) {
+            matrix[r][a] =
+                sign[r] * spacing[a] * (header_has(header, MATRIX) ? meta->axes[n * a + r] : r == a);
+        }
+        matrix[r][3] = sign[r] * meta->origin[r];
+    }
+    if (!header_has(header, SPACING) && !header_has(header, ELEMENT)) {
+        image_note(image, "has no spacing: 1 mm taken");
+    }
+    if (!header_has(header, ORIGIN)) {
+        image_note(image, "has no Offset: the first voxel lies at 0");
+    }
+    image->intent = meta->channels > 1 ? IMAGE_INTENT_VECTOR : 0;
+    image->unit = 1e-3;
+    image->space = IMAGE_SPACE_SCANNER;
+    RETURN_IF_ERROR(header_sizes(size, (double)meta->channels, true, &meta->layout, image, error));
+    return image_place(image, matrix, "TransformMatrix and ElementSpacing", error);
+}
+
+enum status metaimage_header(struct image_bytes *file, struct image *image, struct image_layout *layout,
+                             struct error *error)
+{
+    struct text_header header = {.file = file, .separator = '='};
+    struct metaimage meta = {
+        .image = image, .layout = {.together = true}, .spacing = {1, 1, 1}, .channels = 1, .is_binary = 1};
+    header.dimension = &meta.dimension;
+    for (;;) {
+        RETURN_IF_ERROR(header_next(&header, error));
+        if (header.key == NULL) {
+            return fail(error, STATUS_INPUT, "cut short: the header ends without ElementDataFile");
+        }
+        if (strcasecmp(header.key, "ElementDataFile") == 0) {
+            break;
+        }
+        RETURN_IF_ERROR(header_set(&header, fields, sizeof fields / sizeof *fields, &meta, error));
+    }
+    if (strcasecmp(header.value, "LOCAL") != 0) {
+        RETURN_IF_ERROR(header_data_file(&header, &meta.layout, error));
+    } else if (header.cut) {
+        return fail(error, STATUS_INPUT, "cut short: no data behind the header");
+    }
+    if (header_has(&header, ELEMENT_MSB) && header_has(&header, BINARY_MSB) &&
+        meta.is_msb != meta.element_msb) {
+        return fail(error, STATUS_INPUT,
+                    "header: BinaryDataByteOrderMSB and ElementByteOrderMSB contradict each other");
+    }
+    meta.layout.swapped = meta.is_msb || meta.element_msb;
+    *layout = meta.layout;
+    layout->encoding = meta.is_compressed ? IMAGE_PACKED : meta.is_binary ? IMAGE_RAW : IMAGE_ASCII;
+    if (layout->type == NULL || !header_has(&header, SIZE)) {
+        return fail(error, STATUS_INPUT, "header: no %s", layout->type == NULL ? "ElementType" : "DimSize");
+    }
+    return place(&meta, &header, error);
 }

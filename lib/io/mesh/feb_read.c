@@ -1,7 +1,6 @@
 /* Models of FEBio, versions 2.5 to 4.0: the mesh in <Geometry> or <Mesh>. (Format: FEBio User's Manual, "Free
  * format input".) */
 #include "io/mesh/msh_private.h"
-#include "io/mesh/xml.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-/* Decks of Abaqus and CalculiX: shared by inp_read.c, inp_sets.c and inp_groups.c; private to lib/io. */
+/* Decks of Abaqus and CalculiX; private to lib/io. */
 #pragma once
 
 #include "io/mesh/msh_private.h"
@@ -7,10 +7,9 @@
  * are apart from those of its part. */
 struct inp_set {
     char kind; /* 'N', 'E' or 'S' */
-    bool of_assembly;
     char name[INPUT_NAME + 1];
     int64_t number;       /* from 1, of inp->sets */
-    int64_t line;         /* where it is first defined; 0: it is only named by others */
+    int64_t line;         /* where it is defined; 0: it is only named by others */
     bool of_elements;     /* *ELEMENT names it */
     bool of_surface;      /* elements: a surface uses it */
     int64_t of_section;   /* elements: the line of a section that uses it, or 0 */
@@ -57,12 +56,6 @@ void inp_add_places(struct inp *p, char kind, const char *name, int64_t first, i
 void inp_read_set(struct inp *p, char kind);
 void inp_read_surface(struct inp *p);
 void inp_read_section(struct inp *p);
-
-/* ---- inp_groups.c ---- */
-
-/* Add a member to a set; the face of an element with that label ("S1") to a surface. */
-void inp_add_member(struct inp *p, struct inp_set *set, int64_t place);
-void inp_add_face(struct inp *p, struct inp_set *set, int64_t place, const char *label);
 
 /* Make groups of sets, sections and surfaces: when all of the deck is read. */
 void inp_join_sets(struct inp *p);

@@ -9,19 +9,14 @@
 
 /* ---- lines and fields ---- */
 
-static bool is_blank(char c)
-{
-    return c == ' ' || c == '\t' || c == '\r';
-}
-
 /* Take blanks off both ends. */
 static void trim(const char **text, int64_t *length)
 {
-    while (*length > 0 && is_blank(**text)) {
+    while (*length > 0 && input_is_blank(**text)) {
         ++*text;
         --*length;
     }
-    while (*length > 0 && is_blank((*text)[*length - 1])) {
+    while (*length > 0 && input_is_blank((*text)[*length - 1])) {
         --*length;
     }
 }
@@ -340,7 +335,7 @@ void inp_read(struct msh_reader *r)
         read_keyword(&p);
     }
     input_at(r, "nodes", 0);
-    msh_check_nodes(r);
+    msh_check_tags(r, &r->nodes);
     inp_join_sets(&p);
     inp_free_sets(&p);
 }

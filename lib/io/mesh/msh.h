@@ -45,7 +45,8 @@ struct msh {
     int32_t group_count;
     struct msh_group *groups; /* ascending in (dim, tag) */
     bool by_entity[4];        /* of each dimension: the groups are entities */
-    struct names notes;       /* what the file says that is not read */
+    struct names notes;       /* what the file says that is not read; remarks on what was left out, one line
+                                 each; these may contain blanks */
 };
 
 /* A type of element. */
@@ -77,45 +78,17 @@ MUST_CHECK enum status msh_read(struct msh *msh, int descriptor, const char *nam
                                 struct error *error);
 void msh_free(struct msh *msh);
 
-/* A mesh of simplices in metres. The arrays are those of the stream (see lib/README.md). */
-struct mesh {
-    int dim; /* 2 or 3 */
-    int64_t node_count;
-    double *x; /* node_count x dim, m; every node belongs to a cell */
-    int64_t cell_count;
-    int32_t *cells;       /* cell_count x (dim + 1), positively oriented */
-    int32_t *cell_region; /* cell_count: index into regions */
-    int64_t facet_count;
-    int32_t *facets;    /* facet_count x dim, each the face of exactly one cell, oriented outward */
-    int32_t *facet_set; /* facet_count: index into facet_sets; ascending */
-    int64_t *set_ptr;   /* node_sets.count + 1 */
-    int32_t *set_idx;   /* nodes, ascending within each set */
-    struct names regions, facet_sets, node_sets;
-    struct names notes; /* remarks on what was left out, one line each, first those of the file; these
-                                may contain blanks */
-};
-
-/* The parts of a file of which a mesh is made. */
-struct mesh_options {
-    double unit;         /* of the file's lengths, m */
-    const char *regions; /* comma-separated list of regions to keep, or NULL: all */
-};
-
-/* Make the mesh of `msh`. The dimension is 3 if there are tetrahedra, hexahedra, prisms or pyramids, else 2
- * if there are triangles or quadrangles in a plane z = const. Quadrangles and the cells of more than four
- * nodes are split into simplices so that neighbours conform (every quadrangular face along the diagonal
- * through its lowest node: Dompierre et al., How to subdivide pyramids, prisms and hexahedra into tetrahedra,
- * 1999). Midside nodes are dropped. Nodes keep their order; those without a kept cell are dropped. Facets of
- * one entity all over the boundary get no name. A cell in two groups belongs to the one with the lowest tag;
- * a repeated cell counts once; cells in no group are the region 'body' if there is no other region, else
- * 'unnamed'. STATUS_INPUT for no cells, a surface in space, cells without volume or overlapping cells,
- * coincident nodes of one body but on facets with a group, an unknown region, and two node sets with one
- * name. On failure *mesh is empty. */
-MUST_CHECK enum status mesh_build(struct mesh *mesh, const struct msh *msh,
-                                  const struct mesh_options *options, struct error *error);
-void mesh_free(struct mesh *mesh);
-
-/* Put the mesh's sections into a stream: nodes.x, cells and cells.region if there are cells, facets and
- * facets.set if there are facets, sets.ptr and sets.idx if there are sets. The stream borrows the arrays of
- * *mesh. */
-MUST_CHECK enum status mesh_put(const struct mesh *mesh, struct stream *stream, struct error *error);
+/* Put the mesh of `msh` into an empty stream: nodes.x, cells and cells.region, facets and facets.set if there
+ * are facets, sets.ptr and sets.idx if there are sets; add remarks to msh->notes. `unit`: of the file's
+ * lengths, m; `regions`: comma-separated list of regions to keep, or NULL: all. The dimension is 3 if there
+ * are tetrahedra, hexahedra, prisms or pyramids, else 2 if there are triangles or quadrangles in a plane z =
+ * const. Quadrangles and the cells of more than four nodes are split into simplices so that neighbours
+ * conform (every quadrangular face along the diagonal through its lowest node: Dompierre et al., How to
+ * subdivide pyramids, prisms and hexahedra into tetrahedra, 1999). Midside nodes are dropped. Nodes keep
+ * their order; those without a kept cell are dropped. Facets of one entity all over the boundary get no name.
+ * A cell in two groups belongs to the one with the lowest tag; a repeated cell counts once; cells in no group
+ * are the region 'body' if there is no other region, else 'unnamed'. STATUS_INPUT for no cells, a surface in
+ * space, cells without volume or overlapping cells, coincident nodes of one body but on facets with a group,
+ * an unknown region, and two node sets with one name. */
+MUST_CHECK enum status mesh_build(struct msh *msh, double unit, const char *regions, struct stream *stream,
+                                  struct error *error);

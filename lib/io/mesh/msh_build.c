@@ -94,34 +94,33 @@ static int split(int type, const int32_t node[], bool other, int32_t simplices[M
 /* ---- nodes and cells ---- */
 
 /* Number the nodes of kept cells in the order of the file, and copy their coordinates. */
-static enum status build_nodes(struct mesh_draft *draft)
+static enum status build_nodes(struct mesh *mesh)
 {
     enum { LOST = -1, IN_CELL = -2, KEPT = -3 };
-    const struct msh *msh = draft->msh;
-    struct mesh *mesh = draft->mesh;
+    const struct msh *msh = mesh->msh;
     int64_t lost = 0;
-    RETURN_IF_ERROR(NEW_ARRAY(&draft->node_of, msh->node_count, draft->error));
+    RETURN_IF_ERROR(NEW_ARRAY(&mesh->node_of, msh->node_count, mesh->error));
     for (int64_t n = 0; n < msh->node_count; n++) {
-        draft->node_of[n] = LOST;
+        mesh->node_of[n] = LOST;
     }
     for (int64_t e = 0; e < msh->element_count; e++) {
-        int used = mesh_element_dim(draft, e) == mesh->dim ? mesh_corners(draft, e) : 0;
+        int used = mesh_element_dim(mesh, e) == mesh->dim ? mesh_corners(mesh, e) : 0;
         for (int k = 0; k < used; k++) {
-            int32_t *node = &draft->node_of[msh->node_idx[msh->elements[e].first + k]];
-            *node = draft->region_of[e] >= 0 || *node == KEPT ? KEPT : IN_CELL;
+            int32_t *node = &mesh->node_of[msh->node_idx[msh->elements[e].first + k]];
+            *node = mesh->region_of[e] >= 0 || *node == KEPT ? KEPT : IN_CELL;
         }
     }
     for (int64_t n = 0; n < msh->node_count; n++) {
-        lost += draft->node_of[n] == LOST;
-        draft->node_of[n] = draft->node_of[n] == KEPT ? (int32_t)mesh->node_count++ : -1;
+        lost += mesh->node_of[n] == LOST;
+        mesh->node_of[n] = mesh->node_of[n] == KEPT ? (int32_t)mesh->node_count++ : -1;
     }
     if (lost > 0) {
-        RETURN_IF_ERROR(mesh_add_note(draft, "midside nodes, and nodes of no cell, left out: %jd", lost));
+        RETURN_IF_ERROR(mesh_add_note(mesh, "midside nodes, and nodes of no cell, left out: %jd", lost));
     }
-    RETURN_IF_ERROR(NEW_ARRAY(&mesh->x, mesh->node_count * mesh->dim, draft->error));
+    RETURN_IF_ERROR(NEW_ARRAY(&mesh->x, mesh->node_count * mesh->dim, mesh->error));
     for (int64_t n = 0; n < msh->node_count; n++) {
-        for (int i = 0; i < mesh->dim && draft->node_of[n] >= 0; i++) {
-            mesh->x[draft->node_of[n] * mesh->dim + i] = draft->options->unit * msh->nodes[n].x[i];
+        for (int i = 0; i < mesh->dim && mesh->node_of[n] >= 0; i++) {
+            mesh->x[mesh->node_of[n] * mesh->dim + i] = mesh->unit * msh->nodes[n].x[i];
         }
     }
     return STATUS_OK;
@@ -152,63 +151,60 @@ static double relative_volume(const struct mesh *mesh, const int32_t cell[])
     return dim == 2 ? determinant2(edge[0], edge[1]) : determinant3(edge[0], edge[1], edge[2]);
 }
 
-int mesh_simplices(const struct mesh_draft *draft, int64_t element, int32_t simplices[MSH_MOST_SIMPLICES][4])
+int mesh_simplices(const struct mesh *mesh, int64_t element, int32_t simplices[MSH_MOST_SIMPLICES][4])
 {
-    const struct msh_element *whole = &draft->msh->elements[element];
+    const struct msh_element *whole = &mesh->msh->elements[element];
     int type = msh_type(whole->type).linear;
     int32_t node[8];
-    for (int k = 0; k < mesh_corners(draft, element); k++) {
-        node[k] = draft->node_of[draft->msh->node_idx[whole->first + k]];
+    for (int k = 0; k < mesh_corners(mesh, element); k++) {
+        node[k] = mesh->node_of[mesh->msh->node_idx[whole->first + k]];
     }
     int count = split(type, node, false, simplices);
-    if (draft->mesh->dim == 2 && count == 2 &&
-        relative_volume(draft->mesh, simplices[0]) * relative_volume(draft->mesh, simplices[1]) <= 0) {
+    if (mesh->dim == 2 && count == 2 &&
+        relative_volume(mesh, simplices[0]) * relative_volume(mesh, simplices[1]) <= 0) {
         count = split(type, node, true, simplices); /* not convex: use the other diagonal */
     }
     return count;
 }
 
-static enum status add_cell(struct mesh_draft *draft, int64_t element, int32_t region,
-                            const int32_t simplex[])
+static enum status add_cell(struct mesh *mesh, int64_t element, int32_t region, const int32_t simplex[])
 {
-    struct mesh *mesh = draft->mesh;
     int64_t at = mesh->cell_count;
     int32_t *cell = &mesh->cells[at * (mesh->dim + 1)];
     memcpy(cell, simplex, (size_t)(mesh->dim + 1) * sizeof *cell);
     double volume = relative_volume(mesh, cell);
     if (!(fabs(volume) > ROUND_OFF)) {
-        return fail(draft->error, STATUS_INPUT, "element %jd has no %s (its relative size is %.3g)",
-                    draft->msh->elements[element].tag, mesh->dim == 2 ? "area" : "volume", fabs(volume));
+        return fail(mesh->error, STATUS_INPUT, "element %jd has no %s (its relative size is %.3g)",
+                    mesh->msh->elements[element].tag, mesh->dim == 2 ? "area" : "volume", fabs(volume));
     }
     if (volume < 0) {
         cell[0] = simplex[1];
         cell[1] = simplex[0];
     }
     mesh->cell_region[at] = region;
-    draft->origin[at] = element;
+    mesh->origin[at] = element;
     mesh->cell_count++;
     return STATUS_OK;
 }
 
-static enum status build_cells(struct mesh_draft *draft)
+static enum status build_cells(struct mesh *mesh)
 {
-    const struct msh *msh = draft->msh;
-    struct mesh *mesh = draft->mesh;
+    const struct msh *msh = mesh->msh;
     int32_t simplices[MSH_MOST_SIMPLICES][4];
     int64_t count = 0;
     for (int64_t e = 0; e < msh->element_count; e++) {
-        count += draft->region_of[e] >= 0 ? mesh_simplices(draft, e, simplices) : 0;
+        count += mesh->region_of[e] >= 0 ? mesh_simplices(mesh, e, simplices) : 0;
     }
     if (count > INT32_MAX) {
-        return fail(draft->error, STATUS_INPUT, "%jd cells are more than %d", count, INT32_MAX);
+        return fail(mesh->error, STATUS_INPUT, "%jd cells are more than %d", count, INT32_MAX);
     }
-    RETURN_IF_ERROR(NEW_ARRAY(&mesh->cells, count * (mesh->dim + 1), draft->error));
-    RETURN_IF_ERROR(NEW_ARRAY(&mesh->cell_region, count, draft->error));
-    RETURN_IF_ERROR(NEW_ARRAY(&draft->origin, count, draft->error));
+    RETURN_IF_ERROR(NEW_ARRAY(&mesh->cells, count * (mesh->dim + 1), mesh->error));
+    RETURN_IF_ERROR(NEW_ARRAY(&mesh->cell_region, count, mesh->error));
+    RETURN_IF_ERROR(NEW_ARRAY(&mesh->origin, count, mesh->error));
     for (int64_t e = 0; e < msh->element_count; e++) {
-        int pieces = draft->region_of[e] >= 0 ? mesh_simplices(draft, e, simplices) : 0;
+        int pieces = mesh->region_of[e] >= 0 ? mesh_simplices(mesh, e, simplices) : 0;
         for (int i = 0; i < pieces; i++) {
-            RETURN_IF_ERROR(add_cell(draft, e, draft->region_of[e], simplices[i]));
+            RETURN_IF_ERROR(add_cell(mesh, e, mesh->region_of[e], simplices[i]));
         }
     }
     return STATUS_OK;
@@ -216,28 +212,28 @@ static enum status build_cells(struct mesh_draft *draft)
 
 /* ---- nodes at one place ---- */
 
-static enum status fail_coincident(const struct mesh_draft *draft, int32_t a, int32_t b)
+static enum status fail_coincident(const struct mesh *mesh, int32_t a, int32_t b)
 {
     int64_t tags[2] = {0, 0};
-    for (int64_t n = 0; n < draft->msh->node_count; n++) {
-        if (draft->node_of[n] == a || draft->node_of[n] == b) {
-            tags[draft->node_of[n] == (a > b ? a : b)] = draft->msh->nodes[n].tag;
+    for (int64_t n = 0; n < mesh->msh->node_count; n++) {
+        if (mesh->node_of[n] == a || mesh->node_of[n] == b) {
+            tags[mesh->node_of[n] == (a > b ? a : b)] = mesh->msh->nodes[n].tag;
         }
     }
-    return fail(draft->error, STATUS_INPUT,
+    return fail(mesh->error, STATUS_INPUT,
                 "nodes %jd and %jd are at the same place, in one body: merge them (Coherence Mesh), or name "
                 "the facets of a slit",
                 tags[0], tags[1]);
 }
 
 /* slit[node_count]: whether a node is on a facet that has a group. */
-static void mark_slits(const struct mesh_draft *draft, bool *slit)
+static void mark_slits(const struct mesh *mesh, bool *slit)
 {
-    const struct msh *msh = draft->msh;
+    const struct msh *msh = mesh->msh;
     for (int64_t e = 0; e < msh->element_count; e++) {
-        bool is_named = msh->elements[e].group >= 0 && mesh_element_dim(draft, e) == draft->mesh->dim - 1;
-        for (int k = 0; is_named && k < mesh_corners(draft, e); k++) {
-            int32_t node = draft->node_of[msh->node_idx[msh->elements[e].first + k]];
+        bool is_named = msh->elements[e].group >= 0 && mesh_element_dim(mesh, e) == mesh->dim - 1;
+        for (int k = 0; is_named && k < mesh_corners(mesh, e); k++) {
+            int32_t node = mesh->node_of[msh->node_idx[msh->elements[e].first + k]];
             if (node >= 0) {
                 slit[node] = true;
             }
@@ -246,20 +242,19 @@ static void mark_slits(const struct mesh_draft *draft, bool *slit)
 }
 
 /* Two nodes of the mesh within ROUND_OFF of its extent are an error if cells connect them, unless one is on a
- * facet that has a group: of a slit; else two bodies touch. Both are noted. They coincide in any projection:
+ * facet that has a group: of a slit. Of two bodies they are noted. They coincide in any projection:
  * sort them along a direction with which no lattice is aligned, and compare those that are near along it. */
-static enum status check_coincident(struct mesh_draft *draft)
+static enum status check_coincident(struct mesh *mesh)
 {
     static const double direction[3] = {0.7548776662466927, 0.5698402909980532, 0.3247179572447460};
-    const struct mesh *mesh = draft->mesh;
     struct box box = box_of(mesh->dim, mesh->node_count, mesh->x);
     double tolerance = ROUND_OFF * box_side(&box);
-    int64_t touching = 0, doubled = 0;
-    NEW_SCRATCH(int32_t, body, mesh->node_count, draft->error);
+    int64_t touching = 0;
+    NEW_SCRATCH(int32_t, body, mesh->node_count, mesh->error);
     set_join_cells(mesh->node_count, mesh->cell_count, mesh->dim + 1, mesh->cells, body);
-    NEW_SCRATCH(bool, slit, mesh->node_count, draft->error);
-    mark_slits(draft, slit);
-    NEW_SCRATCH(struct placed, order, mesh->node_count, draft->error);
+    NEW_SCRATCH(bool, slit, mesh->node_count, mesh->error);
+    mark_slits(mesh, slit);
+    NEW_SCRATCH(struct placed, order, mesh->node_count, mesh->error);
     for (int64_t n = 0; n < mesh->node_count; n++) {
         order[n].item = n;
         for (int k = 0; k < mesh->dim; k++) {
@@ -277,23 +272,14 @@ static enum status check_coincident(struct mesh_draft *draft)
             }
             if (farthest <= tolerance && set_first(body, a) != set_first(body, b)) {
                 touching++;
-            } else if (farthest <= tolerance && (slit[a] || slit[b])) {
-                doubled++;
-            } else if (farthest <= tolerance) {
-                RETURN_IF_ERROR(fail_coincident(draft, a, b));
+            } else if (farthest <= tolerance && !slit[a] && !slit[b]) {
+                RETURN_IF_ERROR(fail_coincident(mesh, a, b));
             }
         }
     }
-    if (doubled > 0) {
-        RETURN_IF_ERROR(
-            mesh_add_note(draft,
-                          "nodes at the same place, on named facets of one body: %jd pairs: it has "
-                          "a slit there",
-                          doubled));
-    }
     if (touching > 0) {
         RETURN_IF_ERROR(mesh_add_note(
-            draft,
+            mesh,
             "nodes at the same place, of different bodies: %jd pairs: the bodies are not joined "
             "there (Coherence Mesh in gmsh joins them)",
             touching));
@@ -301,71 +287,62 @@ static enum status check_coincident(struct mesh_draft *draft)
     return STATUS_OK;
 }
 
-/* ---- all of it ---- */
+/* ---- into a stream ---- */
 
-static enum status build(struct mesh_draft *draft)
+/* Put the arrays, which the stream takes. */
+static enum status put(struct mesh *mesh, struct stream *stream)
 {
-    const struct names *notes = &draft->msh->notes;
-    for (int64_t i = 0; i < notes->count; i++) {
-        RETURN_IF_ERROR(mesh_add_note(draft, "%s", notes->name[i]));
+    int64_t dim = mesh->dim, sets = mesh->node_sets.count;
+    const struct {
+        const char *name;
+        enum element_type type;
+        int64_t rows, cols;
+        const struct names *names;
+        void *array;
+    } parts[] = {
+        {"nodes.x", TYPE_F8, mesh->node_count, dim, NULL, &mesh->x},
+        {"cells", TYPE_I4, mesh->cell_count, dim + 1, NULL, &mesh->cells},
+        {"cells.region", TYPE_I4, mesh->cell_count, 1, &mesh->regions, &mesh->cell_region},
+        {"facets", TYPE_I4, mesh->facet_count, dim, NULL, &mesh->facets},
+        {"facets.set", TYPE_I4, mesh->facet_count, 1, &mesh->facet_sets, &mesh->facet_set},
+        {"sets.ptr", TYPE_I8, sets > 0 ? sets + 1 : 0, 1, &mesh->node_sets, &mesh->set_ptr},
+        {"sets.idx", TYPE_I4, mesh->set_ptr[sets], 1, NULL, &mesh->set_idx},
+    };
+    for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
+        const char *attributes = i > 0 ? "" : dim == 2 ? "unit=m cols=x,y" : "unit=m cols=x,y,z";
+        void *array = array_take(parts[i].array);
+        if (parts[i].rows == 0) {
+            free(array);
+            continue;
+        }
+        RETURN_IF_ERROR(parts[i].names != NULL
+                            ? stream_put_named(stream, parts[i].name, parts[i].type, parts[i].rows,
+                                               parts[i].names, array, true, mesh->error)
+                            : stream_put(stream, parts[i].name, parts[i].type, parts[i].rows, parts[i].cols,
+                                         attributes, array, true, mesh->error));
     }
-    RETURN_IF_ERROR(mesh_find_dim(draft));
-    RETURN_IF_ERROR(mesh_pick_regions(draft));
-    RETURN_IF_ERROR(build_nodes(draft));
-    RETURN_IF_ERROR(build_cells(draft));
-    RETURN_IF_ERROR(check_coincident(draft));
-    return mesh_build_facets(draft);
+    return STATUS_OK;
 }
 
-enum status mesh_build(struct mesh *mesh, const struct msh *msh, const struct mesh_options *options,
-                       struct error *error)
-{
-    struct mesh_draft draft = {.mesh = mesh, .msh = msh, .options = options, .error = error};
-    *mesh = (struct mesh){0};
-    enum status status = build(&draft);
-    FREE_ALL(draft.region_of, draft.node_of, draft.origin);
-    if (status != STATUS_OK) {
-        mesh_free(mesh);
-    }
-    return status;
-}
-
-void mesh_free(struct mesh *mesh)
+static void mesh_free(struct mesh *mesh)
 {
     FREE_ALL(mesh->x, mesh->cells, mesh->cell_region, mesh->facets, mesh->facet_set, mesh->set_ptr,
-             mesh->set_idx);
+             mesh->set_idx, mesh->region_of, mesh->node_of, mesh->origin, mesh->face, mesh->group_ptr,
+             mesh->group_idx, mesh->face_stamp, mesh->node_stamp);
     names_free(&mesh->regions);
     names_free(&mesh->facet_sets);
     names_free(&mesh->node_sets);
-    names_free(&mesh->notes);
-    *mesh = (struct mesh){0};
 }
 
-/* ---- into a stream ---- */
-
-enum status mesh_put(const struct mesh *mesh, struct stream *stream, struct error *error)
+enum status mesh_build(struct msh *msh, double unit, const char *regions, struct stream *stream,
+                       struct error *error)
 {
-    int dim = mesh->dim;
-    int64_t sets = mesh->node_sets.count;
-    RETURN_IF_ERROR(stream_put(stream, "nodes.x", TYPE_F8, mesh->node_count, dim,
-                               dim == 2 ? "unit=m cols=x,y" : "unit=m cols=x,y,z", mesh->x, false, error));
-    if (mesh->cell_count > 0) {
-        RETURN_IF_ERROR(
-            stream_put(stream, "cells", TYPE_I4, mesh->cell_count, dim + 1, "", mesh->cells, false, error));
-        RETURN_IF_ERROR(stream_put_named(stream, "cells.region", TYPE_I4, mesh->cell_count, &mesh->regions,
-                                         mesh->cell_region, false, error));
-    }
-    if (mesh->facet_count > 0) {
-        RETURN_IF_ERROR(
-            stream_put(stream, "facets", TYPE_I4, mesh->facet_count, dim, "", mesh->facets, false, error));
-        RETURN_IF_ERROR(stream_put_named(stream, "facets.set", TYPE_I4, mesh->facet_count, &mesh->facet_sets,
-                                         mesh->facet_set, false, error));
-    }
-    if (sets > 0) {
-        RETURN_IF_ERROR(stream_put_named(stream, "sets.ptr", TYPE_I8, sets + 1, &mesh->node_sets,
-                                         mesh->set_ptr, false, error));
-        RETURN_IF_ERROR(
-            stream_put(stream, "sets.idx", TYPE_I4, mesh->set_ptr[sets], 1, "", mesh->set_idx, false, error));
-    }
-    return STATUS_OK;
+    FREED_BY(mesh_free) struct mesh mesh = {.msh = msh, .unit = unit, .wanted = regions, .error = error};
+    RETURN_IF_ERROR(mesh_find_dim(&mesh));
+    RETURN_IF_ERROR(mesh_pick_regions(&mesh));
+    RETURN_IF_ERROR(build_nodes(&mesh));
+    RETURN_IF_ERROR(build_cells(&mesh));
+    RETURN_IF_ERROR(check_coincident(&mesh));
+    RETURN_IF_ERROR(mesh_build_facets(&mesh));
+    return put(&mesh, stream);
 }

@@ -1,7 +1,7 @@
 /* Reading mesh files; private to lib/io.
  *
  *   $PhysicalNames, $Entities \
- *   $Nodes                     } msh_list.c --> msh_groups.c --> struct msh
+ *   $Nodes                     } msh_list.c --> struct msh
  *   $Elements                 /
  *   inp_read.c, feb_read.c, vtu_read.c, vtk_read.c as well
  *
@@ -156,9 +156,8 @@ void msh_join_groups(struct msh_reader *reader);
 void msh_add_node(struct msh_reader *reader, int64_t tag, const double x[3]);
 void msh_add_element(struct msh_reader *reader, int64_t tag, int type, const int64_t node[], int64_t key);
 
-/* A repeated tag is a failure. */
-void msh_check_nodes(struct msh_reader *reader);
-void msh_check_elements(struct msh_reader *reader);
+/* A repeated tag, of nodes or of elements, is a failure. */
+void msh_check_tags(struct msh_reader *reader, struct msh_index *index);
 
 /* Place of `tag`, or -1; the first run that does not end before it. */
 int64_t msh_index_find(struct msh_index *index, int64_t tag);
@@ -228,3 +227,21 @@ void inp_read(struct msh_reader *r);
 void feb_read(struct msh_reader *r);
 void vtu_read(struct msh_reader *r);
 void vtk_read(struct msh_reader *r);
+
+/* ---- xml.c: files in XML, element by element ---- */
+
+/* What is done at the start and the end of each element. `depth`: 0 for the root. Failures are those of the
+ * reader, whose record is the line. */
+struct xml_handler {
+    void *context;
+    void (*begin)(void *context, const char *name, const char **attributes, int depth);
+    /* text[size], and a NUL behind it: the characters of the element, without those of its children. */
+    void (*end)(void *context, const char *name, const char *text, int64_t size, int depth);
+};
+
+/* The value of an attribute, or NULL. */
+const char *xml_attribute(const char **attributes, const char *name);
+
+/* Parse the rest of the file. It must be whole, unless it has an element `last`, at which parsing stops;
+ * reader->at is then at the '<' of its tag. Entities are not declared: a document type is refused. */
+void xml_parse(struct msh_reader *reader, const char *last, const struct xml_handler *handler);

@@ -17,12 +17,6 @@ static bool is_end_of_line(char c)
     return c == '\n' || c == '\r';
 }
 
-/* MSH 1 has no $MeshFormat. */
-static bool is_mesh1(const char *bytes, size_t size)
-{
-    return size > 4 && memcmp(bytes, "$NOD", 4) == 0 && is_end_of_line(bytes[4]);
-}
-
 static enum status fail_version(double version, struct error *error)
 {
     return fail(error, STATUS_INPUT,
@@ -47,51 +41,50 @@ static void read_format(struct msh_reader *r)
     }
 }
 
-/* Read "$Name" into name[size]. */
-static void read_heading(struct msh_reader *r, char name[], size_t size)
+/* Take a mark, "$Name" or "$EndName", or what else is there, of at most 79 bytes; returns its length. */
+static size_t take_mark(struct msh_reader *r, char mark[80])
 {
     size_t length = 0;
-    const char *at = r->at;
-    while (at + length < r->end && length + 1 < size &&
-           (length == 0 ? at[0] == '$' : at[length] > ' ' && at[length] < 127)) {
-        name[length] = at[length];
-        length++;
+    for (; r->at < r->end && length < 79 && *r->at > ' ' && *r->at < 127; r->at++) {
+        mark[length++] = *r->at;
     }
-    name[length] = '\0';
-    if (length < 2) {
+    mark[length] = '\0';
+    return length;
+}
+
+static void read_heading(struct msh_reader *r, char name[80])
+{
+    if (take_mark(r, name) < 2 || name[0] != '$') {
         msh_fail(r, "followed by something that is not a section");
-    } else if (at + length == r->end) {
+    } else if (r->at == r->end) {
         msh_fail(r, "followed by an unfinished section: the file is truncated");
     }
-    r->at += length;
 }
 
 /* Read "$EndName" on a line of its own, or at the end of the file. */
 static void read_ending(struct msh_reader *r)
 {
+    char mark[80];
     const char *name = r->section + 1;
-    size_t length = strlen(name);
     if (r->status != STATUS_OK) {
         return;
     }
     r->record = 0;
     msh_skip_space(r);
-    if ((size_t)(r->end - r->at) < 4 + length) {
-        msh_fail(r, "no $End%s: the file is truncated", name);
-    } else if (memcmp(r->at, "$End", 4) != 0 || memcmp(r->at + 4, name, length) != 0 ||
-               (r->at + 4 + length < r->end && r->at[4 + length] > ' ')) {
-        msh_fail(r, "more in the section than its head says: no $End%s where it should be", name);
-    } else {
-        r->at += 4 + length;
-        if (memchr(r->at, '\n', (size_t)(r->end - r->at)) != NULL) {
-            msh_skip_line(r);
-        }
+    bool is_ending = take_mark(r, mark) > 4 && memcmp(mark, "$End", 4) == 0 && strcmp(mark + 4, name) == 0;
+    if (!is_ending) {
+        msh_fail(r,
+                 r->at == r->end ? "no $End%s: the file is truncated"
+                                 : "more in the section than its head says: no $End%s where it should be",
+                 name);
+    } else if (memchr(r->at, '\n', (size_t)(r->end - r->at)) != NULL) {
+        msh_skip_line(r);
     }
 }
 
 static void skip_section(struct msh_reader *r)
 {
-    char ending[80] = "$End";
+    char ending[96] = "$End";
     strncat(ending, r->section + 1, sizeof ending - 5);
     const char *found = memmem(r->at, (size_t)(r->end - r->at), ending, strlen(ending));
     if (found == NULL) {
@@ -143,10 +136,10 @@ static void read_content(struct msh_reader *r)
 
 static void read_sections(struct msh_reader *r)
 {
-    char name[64], last[64] = "$MeshFormat";
+    char name[80], last[80] = "$MeshFormat";
     while (r->status == STATUS_OK && r->at < r->end) {
         r->section = last;
-        read_heading(r, name, sizeof name);
+        read_heading(r, name);
         if (r->status == STATUS_OK) {
             r->section = name;
             read_content(r);
@@ -155,6 +148,7 @@ static void read_sections(struct msh_reader *r)
             memcpy(last, name, sizeof last);
         }
     }
+    r->section = "mesh";
     if (r->status == STATUS_OK && !r->has[MSH_ELEMENTS]) {
         r->status = fail(r->error, STATUS_INPUT, "no section %s: the file is truncated, or no mesh was made",
                          r->has[MSH_NODES] ? "$Elements" : "$Nodes");
@@ -226,7 +220,7 @@ enum status msh_parse(struct msh *msh, const char *bytes, size_t size, const cha
     reader.members = MEMBERS_PER_BYTE * (int64_t)size;
     const struct format *format = find_format(bytes, size);
     *msh = (struct msh){0};
-    if (is_mesh1(bytes, size)) {
+    if (size > 4 && memcmp(bytes, "$NOD", 4) == 0 && is_end_of_line(bytes[4])) { /* no $MeshFormat */
         return fail_version(1, error);
     }
     if (format == NULL) {

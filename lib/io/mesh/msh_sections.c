@@ -160,20 +160,16 @@ void msh_read_entities(struct msh_reader *r)
 
 enum { EACH_NODE = -1 }; /* the node tells the number of its parameters */
 
-/* $ParametricNodes of MSH 2 give each node its entity, and the parameters on curves and surfaces. */
-static int64_t parameters_of_node(struct msh_reader *r)
-{
-    int64_t dim = msh_int(r, "dimension of the entity", -1, 3);
-    (void)msh_int(r, "entity", -MSH_LARGEST_TAG, MSH_LARGEST_TAG);
-    return dim == 1 || dim == 2 ? dim : 0;
-}
-
 static void read_point(struct msh_reader *r, int64_t parameters, double x[3])
 {
     for (int k = 0; k < 3; k++) {
         x[k] = msh_real(r, "coordinate");
     }
-    parameters = parameters == EACH_NODE ? parameters_of_node(r) : parameters;
+    if (parameters == EACH_NODE) { /* $ParametricNodes of MSH 2: on curves and surfaces */
+        parameters = msh_int(r, "dimension of the entity", -1, 3);
+        parameters = parameters == 1 || parameters == 2 ? parameters : 0;
+        (void)msh_int(r, "entity", -MSH_LARGEST_TAG, MSH_LARGEST_TAG);
+    }
     for (int64_t k = 0; k < parameters; k++) {
         (void)msh_real(r, "parameter");
     }
@@ -241,7 +237,7 @@ void msh_read_nodes(struct msh_reader *r)
         r->record = 0;
         msh_fail(r, "%jd nodes, not the %jd that the section's head says", block.first, count);
     }
-    msh_check_nodes(r);
+    msh_check_tags(r, &r->nodes);
 }
 
 /* ---- $Elements ---- */
@@ -388,6 +384,6 @@ void msh_read_elements(struct msh_reader *r)
         msh_fail(r, "%jd elements, not the %jd that the section's head says", found, count);
     }
     if (r->status == STATUS_OK) {
-        msh_check_elements(r);
+        msh_check_tags(r, &r->elements);
     }
 }

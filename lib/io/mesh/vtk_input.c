@@ -11,8 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Unstructured grids of VTK: an array of the cells tells the regions, arrays of the points the sets of tovtk.
- */
+/* ---- groups: an array of the cells tells the regions, arrays of the points the sets of tovtk ---- */
 
 /* An array that numbers the cells tells no regions: all of more than a few values are different. */
 #define FEW_CELLS 10
@@ -92,64 +91,46 @@ static void name_region(const struct vtk_input *v, const struct vtk_array *array
     }
 }
 
-/* The whole number that a real one is, to single precision. */
-static int64_t near_whole(struct msh_reader *r, const char *name, double number)
+/* The region of a cell, with its dimension, as a number: ascending by the value, then by the dimension. The
+ * value is the whole number that a real one is, to single precision. */
+static int64_t region_of(struct vtk_input *v, const struct vtk_array *array, int64_t cell)
 {
+    double number = array->value[cell];
     double rounding = 2.0 * (double)FLT_EPSILON * (1.0 + fabs(number));
     if (!(fabs(number - rint(number)) <= rounding && fabs(number) < 9e15)) {
-        msh_fail(r, "%s: %.9g is not a whole number", name, number);
+        msh_fail(v->r, "%s: %.9g is not a whole number", array->name, number);
         return 0;
     }
-    return (int64_t)rint(number);
-}
-
-/* The keys of the groups of all values, value[count], by value and dimension: key[4 * count], 0 where no cell
- * is. Groups are named in ascending order of the values. */
-static void name_regions(struct vtk_input *v, const struct vtk_array *array, const int64_t of_cell[],
-                         int64_t count, const int64_t value[], int64_t key[])
-{
-    bool zero_is_none = strcmp(array->name, "gmsh:physical") == 0;
-    int most = 0;
-    for (int64_t c = 0; c < v->cell_count; c++) {
-        int dim = msh_type(v->r->msh->elements[c].type).dim;
-        most = dim > most ? dim : most;
-        key[4 * first_from(value, 0, count, of_cell[c]) + dim] = -1;
-    }
-    for (int64_t k = 0; k < 4 * count; k++) {
-        char name[256];
-        if (zero_is_none && value[k / 4] == 0) {
-            key[k] = 0;
-        } else if (key[k] != 0) {
-            name_region(v, array, value[k / 4], (int)(k % 4), most, name, sizeof name);
-            key[k] = input_group(v->r, (int)(k % 4), name);
-        }
-    }
+    return 4 * (int64_t)rint(number) + msh_type(v->r->msh->elements[cell].type).dim;
 }
 
 static void add_regions(struct vtk_input *v, const struct vtk_array *array)
 {
     struct msh_reader *r = v->r;
-    SCRATCH int64_t *of_cell = NULL, *value = NULL, *key = NULL;
+    SCRATCH int64_t *region = NULL, *key = NULL;
+    bool zero_is_none = strcmp(array->name, "gmsh:physical") == 0;
+    int most = 0;
     if (array->count != v->cell_count) {
         msh_fail(r, "%s: %jd numbers, not one for each of %jd cells", array->name, array->count,
                  v->cell_count);
     }
-    MSH_NEW(r, &of_cell, v->cell_count);
-    MSH_NEW(r, &value, v->cell_count);
-    MSH_NEW(r, &key, 4 * v->cell_count);
+    MSH_NEW(r, &region, v->cell_count);
     for (int64_t c = 0; r->status == STATUS_OK && c < v->cell_count; c++) {
-        value[c] = of_cell[c] = near_whole(r, array->name, array->value[c]);
+        region[c] = region_of(v, array, c);
+        most = (region[c] & 3) > most ? (int)(region[c] & 3) : most;
     }
-    if (r->status != STATUS_OK) {
-        return;
+    int64_t count = r->status == STATUS_OK ? sort_distinct(v->cell_count, region) : 0;
+    MSH_NEW(r, &key, count);
+    for (int64_t k = 0; r->status == STATUS_OK && k < count; k++) {
+        char name[256];
+        int dim = (int)(region[k] & 3);
+        name_region(v, array, (region[k] - dim) / 4, dim, most, name, sizeof name);
+        key[k] = zero_is_none && region[k] == dim ? 0 : input_group(r, dim, name);
     }
-    int64_t count = sort_distinct(v->cell_count, value);
-    name_regions(v, array, of_cell, count, value, key);
-    for (int64_t c = 0; c < v->cell_count; c++) {
-        int64_t place = first_from(value, 0, count, of_cell[c]);
-        v->r->msh->elements[c].key = key[4 * place + msh_type(v->r->msh->elements[c].type).dim];
+    for (int64_t c = 0; r->status == STATUS_OK && c < v->cell_count; c++) {
+        r->msh->elements[c].key = key[first_from(region, 0, count, region_of(v, array, c))];
     }
-    input_note(v->r, "the regions are those of the cells' array '%s'", array->name);
+    input_note(r, "the regions are those of the cells' array '%s'", array->name);
 }
 
 /* Node sets and facets of tovtk, 1 at their nodes. */
@@ -174,16 +155,6 @@ static void add_sets(struct vtk_input *v)
     }
 }
 
-/* Group elements by the array of the regions, add those of sets: all cells are there. (vtk_groups.c) */
-static void vtk_add_groups(struct vtk_input *v)
-{
-    const struct vtk_array *array = v->r->status == STATUS_OK ? find_regions(v) : NULL;
-    if (array != NULL && v->r->status == STATUS_OK) {
-        add_regions(v, array);
-    }
-    add_sets(v);
-}
-
 /* ---- arrays ---- */
 
 static bool begins(const char *name, const char *begin)
@@ -191,8 +162,9 @@ static bool begins(const char *name, const char *begin)
     return strncmp(name, begin, strlen(begin)) == 0;
 }
 
-bool vtk_is_wanted(struct vtk_input *v, const struct vtk_array *array, const struct nifti_type *type)
+bool vtk_is_wanted(struct vtk_input *v, const struct vtk_array *array)
 {
+    const struct nifti_type *type = array->type;
     const char *asked = v->r->region_array; /* its numbers may be of a real type */
     bool is_asked = array->kind == VTK_OF_CELLS && asked != NULL && strcmp(array->name, asked) == 0;
     bool is_whole = type != NULL && type->most > type->least;
@@ -227,10 +199,9 @@ struct vtk_array *vtk_add(struct vtk_input *v, const struct vtk_array *array, in
     return r->status == STATUS_OK ? added : NULL;
 }
 
-void vtk_fill_text(struct msh_reader *r, struct vtk_array *array, const struct nifti_type *type,
-                   const char **at, const char *end)
+void vtk_fill_text(struct msh_reader *r, struct vtk_array *array, const char **at, const char *end)
 {
-    bool whole = type->most > type->least;
+    bool whole = array->type->most > array->type->least;
     for (int64_t i = 0; r->status == STATUS_OK && i < array->count; i++) {
         int64_t length;
         const char *word = input_word(at, end, ',', &length);
@@ -354,7 +325,11 @@ void vtk_build(struct vtk_input *v)
     input_at(r, "grid", 0);
     add_nodes(v);
     add_cells(v);
-    vtk_add_groups(v);
+    const struct vtk_array *regions = r->status == STATUS_OK ? find_regions(v) : NULL;
+    if (regions != NULL && r->status == STATUS_OK) {
+        add_regions(v, regions);
+    }
+    add_sets(v);
     for (int64_t i = 0; i < v->count; i++) {
         free(v->arrays[i].value);
     }

@@ -8,61 +8,66 @@
 
 struct legacy {
     struct vtk_input v;
+    const char *at, *end; /* the rest of the line */
     bool binary;
     enum vtk_kind data; /* of what the arrays are */
     int64_t tuples;
     char keyword[64];
 };
 
-/* The next word of a line, copied; empty if there is none. */
-static void copy_word(struct msh_reader *r, const char **at, const char *end, char text[], size_t size)
+/* The next word of the line, copied; empty if there is none. */
+static void copy_word(struct legacy *l, char text[], size_t size)
 {
     int64_t length;
-    const char *word = input_word(at, end, ',', &length);
+    const char *word = input_word(&l->at, l->end, ',', &length);
     if (length >= (int64_t)size) {
-        msh_fail(r, "a word of more than %zu bytes", size - 1);
+        msh_fail(l->v.r, "a word of more than %zu bytes", size - 1);
         length = 0;
     }
     snprintf(text, size, "%.*s", (int)length, word != NULL ? word : "");
 }
 
-/* The first word of the next line that has one; empty at the end. The rest of the line is then behind it. */
-static void first_word(struct msh_reader *r, const char **at, const char **end, char text[], size_t size)
+static bool next_line(struct legacy *l)
+{
+    return msh_next_line(l->v.r, &l->at, &l->end);
+}
+
+/* The first word of the next line that has one; empty at the end. */
+static void first_word(struct legacy *l, char text[], size_t size)
 {
     text[0] = '\0';
-    while (text[0] == '\0' && msh_next_line(r, at, end)) {
-        copy_word(r, at, *end, text, size);
+    while (text[0] == '\0' && next_line(l)) {
+        copy_word(l, text, size);
     }
 }
 
-static int64_t next_count(struct msh_reader *r, const char **at, const char *end, int64_t least)
+static int64_t next_count(struct legacy *l, int64_t least)
 {
     int64_t length;
-    const char *word = input_word(at, end, ',', &length);
-    return input_whole(r, "a count", word != NULL ? word : "", length, least, INT32_MAX);
+    const char *word = input_word(&l->at, l->end, ',', &length);
+    return input_whole(l->v.r, "a count", word != NULL ? word : "", length, least, INT32_MAX);
 }
 
 /* The type of texts, which are stepped over. */
 static const struct nifti_type text_type;
 
-static const struct nifti_type *next_type(struct msh_reader *r, const char **at, const char *end)
+static const struct nifti_type *next_type(struct legacy *l)
 {
     char name[32];
-    copy_word(r, at, end, name, sizeof name);
+    copy_word(l, name, sizeof name);
     const struct nifti_type *type =
         strcasecmp(name, "string") == 0 ? &text_type : nifti_type_named(NUMBERS_OF_VTK, name);
     if (type == NULL) {
-        msh_fail(r, "numbers of type '%s' are not read", name);
+        msh_fail(l->v.r, "numbers of type '%s' are not read", name);
     }
     return type;
 }
 
 /* Pass over METADATA: up to a blank line. */
-static void skip_metadata(struct msh_reader *r)
+static void skip_metadata(struct legacy *l)
 {
-    const char *at, *end;
     int64_t length;
-    while (msh_next_line(r, &at, &end) && input_word(&at, end, ',', &length) != NULL) {
+    while (next_line(l) && input_word(&l->at, l->end, ',', &length) != NULL) {
     }
 }
 
@@ -90,7 +95,6 @@ static void decode_name(char name[])
 static void skip_texts(struct legacy *l, int64_t count)
 {
     struct msh_reader *r = l->v.r;
-    const char *at, *end;
     for (int64_t i = 0; r->status == STATUS_OK && i < count; i++) {
         int width = l->binary && r->at < r->end ? 8 >> ((unsigned char)*r->at >> 6) : 0;
         uint64_t size = width > 0 ? *r->at & 0x3f : 0;
@@ -98,7 +102,7 @@ static void skip_texts(struct legacy *l, int64_t count)
             size = size << 8 | (unsigned char)r->at[k];
         }
         if (l->binary ? width == 0 || r->end - r->at < width || size > (uint64_t)(r->end - r->at - width)
-                      : !msh_next_line(r, &at, &end)) {
+                      : !next_line(l)) {
             msh_fail(r, "only %jd of %jd texts", i, count);
         } else if (l->binary) {
             r->at += width + (int64_t)size;
@@ -106,18 +110,22 @@ static void skip_texts(struct legacy *l, int64_t count)
     }
 }
 
-/* Read `count` numbers into an array of the grid, or step over them. */
-static struct vtk_array *read_numbers(struct legacy *l, const struct vtk_array *array,
-                                      const struct nifti_type *type, int64_t count)
+/* Read `count` numbers into an array of the grid, or step over them; NULL: they are not there. */
+static struct vtk_array *read_numbers(struct legacy *l, struct vtk_array *array, int64_t count)
 {
     struct msh_reader *r = l->v.r;
     struct vtk_array *added = NULL;
+    const struct nifti_type *type = array->type;
+    if (type == NULL) { /* which has been told */
+        return NULL;
+    }
     int64_t left = r->end - r->at, size = type->bytes == 0 ? 1 : l->binary ? type->bytes : 2, length;
     if (r->status != STATUS_OK || count > (left + !l->binary) / size) {
         msh_fail(r, "%jd numbers cannot be in the %jd bytes that are left", count, left);
         return NULL;
     }
-    if (vtk_is_wanted(&l->v, array, type->bytes > 0 ? type : NULL)) {
+    array->type = type->bytes > 0 ? type : NULL;
+    if (vtk_is_wanted(&l->v, array)) {
         added = vtk_add(&l->v, array, count);
     }
     if (type->bytes == 0) {
@@ -129,7 +137,7 @@ static struct vtk_array *read_numbers(struct legacy *l, const struct vtk_array *
         r->at += count * size;
         r->at += r->at < r->end && *r->at == '\n';
     } else if (added != NULL) {
-        vtk_fill_text(r, added, type, &r->at, r->end);
+        vtk_fill_text(r, added, &r->at, r->end);
         if (r->status == STATUS_OK && count > 0 && r->at == r->end) {
             msh_fail(r, "%s: the file ends without a line's end: cut within its last number?", array->name);
         }
@@ -146,16 +154,15 @@ static struct vtk_array *read_numbers(struct legacy *l, const struct vtk_array *
 /* A line "OFFSETS vtktypeint64", and the numbers. */
 static struct vtk_array *read_list(struct legacy *l, enum vtk_kind kind, const char *name, int64_t count)
 {
-    const char *at = "", *end = at;
     char word[32];
     struct vtk_array array = {.kind = kind, .components = 1};
-    first_word(l->v.r, &at, &end, word, sizeof word);
+    first_word(l, word, sizeof word);
     if (strcasecmp(word, name) != 0) {
         msh_fail(l->v.r, "no %s: the file is truncated", name);
     }
     snprintf(array.name, sizeof array.name, "%s", name);
-    const struct nifti_type *type = l->v.r->status == STATUS_OK ? next_type(l->v.r, &at, end) : NULL;
-    return type != NULL ? read_numbers(l, &array, type, count) : NULL;
+    array.type = l->v.r->status == STATUS_OK ? next_type(l) : NULL;
+    return read_numbers(l, &array, count);
 }
 
 /* Cells of versions before 5: for each cell the number of its points, and these. In place. */
@@ -198,11 +205,12 @@ static void read_lists(struct legacy *l, int64_t count, int64_t size)
     (void)read_list(l, VTK_CONNECTIVITY, "CONNECTIVITY", size);
 }
 
-static void read_cells(struct legacy *l, const char *at, const char *end)
+static void read_cells(struct legacy *l)
 {
     struct msh_reader *r = l->v.r;
-    struct vtk_array array = {.kind = VTK_CONNECTIVITY, .components = 1, .name = "CELLS"};
-    int64_t count = next_count(r, &at, end, 0), size = next_count(r, &at, end, 0);
+    struct vtk_array array = {
+        .kind = VTK_CONNECTIVITY, .components = 1, .name = "CELLS", .type = nifti_type(IMAGE_INT32)};
+    int64_t count = next_count(l, 0), size = next_count(l, 0);
     const char *next = r->at;
     while (next < r->end && isspace((unsigned char)*next)) {
         next++;
@@ -215,7 +223,7 @@ static void read_cells(struct legacy *l, const char *at, const char *end)
     if (count > size) {
         msh_fail(r, "%jd cells cannot have %jd numbers", count, size);
     }
-    if (read_numbers(l, &array, nifti_type(IMAGE_INT32), size) != NULL) {
+    if (read_numbers(l, &array, size) != NULL) {
         split_cells(l);
     }
 }
@@ -225,41 +233,39 @@ static void read_cells(struct legacy *l, const char *at, const char *end)
 static void read_array(struct legacy *l, const char *name, int64_t components, int64_t tuples,
                        const struct nifti_type *type)
 {
-    struct vtk_array array = {.kind = l->data, .components = components};
+    struct vtk_array array = {.kind = l->data, .components = components, .type = type};
     int64_t count;
     snprintf(array.name, sizeof array.name, "%s", name);
     decode_name(array.name);
     if (__builtin_mul_overflow(components, tuples, &count)) {
         msh_fail(l->v.r, "%s: %jd tuples of %jd numbers are too many", name, tuples, components);
-    } else if (type != NULL) {
-        (void)read_numbers(l, &array, type, count);
+    } else {
+        (void)read_numbers(l, &array, count);
     }
 }
 
-static void read_field(struct legacy *l, const char *at, const char *end)
+static void read_field(struct legacy *l)
 {
-    struct msh_reader *r = l->v.r;
     char name[128];
-    copy_word(r, &at, end, name, sizeof name);
-    int64_t count = next_count(r, &at, end, 0);
-    int64_t i = 0;
-    while (i < count && msh_next_line(r, &at, &end)) {
-        copy_word(r, &at, end, name, sizeof name);
+    copy_word(l, name, sizeof name);
+    int64_t count = next_count(l, 0), i = 0;
+    while (i < count && next_line(l)) {
+        copy_word(l, name, sizeof name);
         if (strcasecmp(name, "METADATA") == 0) {
-            skip_metadata(r);
+            skip_metadata(l);
         } else if (name[0] != '\0') {
-            int64_t components = next_count(r, &at, end, 0), tuples = next_count(r, &at, end, 0);
-            read_array(l, name, components, tuples, next_type(r, &at, end));
+            int64_t components = next_count(l, 0), tuples = next_count(l, 0);
+            read_array(l, name, components, tuples, next_type(l));
             i++;
         }
     }
     if (i < count) {
-        msh_fail(r, "FIELD has %jd of %jd arrays: the file is truncated", i, count);
+        msh_fail(l->v.r, "FIELD has %jd of %jd arrays: the file is truncated", i, count);
     }
 }
 
 /* Data sets of one array: "SCALARS name type", ... */
-static bool read_attribute(struct legacy *l, const char *at, const char *end)
+static bool read_attribute(struct legacy *l)
 {
     static const struct {
         const char *keyword;
@@ -274,18 +280,18 @@ static bool read_attribute(struct legacy *l, const char *at, const char *end)
             continue;
         }
         int64_t components = attributes[i].components;
-        copy_word(r, &at, end, name, sizeof name);
-        components = components < 0 ? next_count(r, &at, end, 1) : components;
+        copy_word(l, name, sizeof name);
+        components = components < 0 ? next_count(l, 1) : components;
         const struct nifti_type *type = attributes[i].components == -2
                                             ? nifti_type(l->binary ? IMAGE_UINT8 : IMAGE_FLOAT32)
-                                            : next_type(r, &at, end);
-        while (at < end && isspace((unsigned char)*at)) {
-            at++;
+                                            : next_type(l);
+        while (l->at < l->end && isspace((unsigned char)*l->at)) {
+            l->at++;
         }
-        components = components > 0 ? components : at < end ? next_count(r, &at, end, 1) : 1;
+        components = components > 0 ? components : l->at < l->end ? next_count(l, 1) : 1;
         const char *table = r->at; /* the line LOOKUP_TABLE, which may be left out */
-        if (attributes[i].components == 0 && msh_next_line(r, &at, &end)) {
-            copy_word(r, &at, end, l->keyword, sizeof l->keyword);
+        if (attributes[i].components == 0 && next_line(l)) {
+            copy_word(l, l->keyword, sizeof l->keyword);
             r->at = strcasecmp(l->keyword, "LOOKUP_TABLE") == 0 ? r->at : table;
         }
         read_array(l, name, components, l->tuples, type);
@@ -294,39 +300,36 @@ static bool read_attribute(struct legacy *l, const char *at, const char *end)
     return false;
 }
 
-static void read_keyword(struct legacy *l, const char *at, const char *end)
+static void read_keyword(struct legacy *l)
 {
-    struct msh_reader *r = l->v.r;
     const char *key = l->keyword;
     if (strcasecmp(key, "POINTS") == 0) {
         struct vtk_array array = {.kind = VTK_POINTS, .components = 3, .name = "points"};
-        l->v.point_count = next_count(r, &at, end, 0);
-        const struct nifti_type *type = next_type(r, &at, end);
-        if (type != NULL) {
-            (void)read_numbers(l, &array, type, 3 * l->v.point_count);
-        }
+        l->v.point_count = next_count(l, 0);
+        array.type = next_type(l);
+        (void)read_numbers(l, &array, 3 * l->v.point_count);
     } else if (strcasecmp(key, "CELLS") == 0) {
-        read_cells(l, at, end);
+        read_cells(l);
     } else if (strcasecmp(key, "CELL_TYPES") == 0) {
-        struct vtk_array array = {.kind = VTK_TYPES, .components = 1, .name = "types"};
-        (void)read_numbers(l, &array, nifti_type(IMAGE_INT32), next_count(r, &at, end, 0));
+        struct vtk_array array = {
+            .kind = VTK_TYPES, .components = 1, .name = "types", .type = nifti_type(IMAGE_INT32)};
+        (void)read_numbers(l, &array, next_count(l, 0));
     } else if (strcasecmp(key, "CELL_DATA") == 0 || strcasecmp(key, "POINT_DATA") == 0) {
         l->data = toupper((unsigned char)key[0]) == 'C' ? VTK_OF_CELLS : VTK_OF_POINTS;
-        l->tuples = next_count(r, &at, end, 0);
+        l->tuples = next_count(l, 0);
     } else if (strcasecmp(key, "FIELD") == 0) {
-        read_field(l, at, end);
+        read_field(l);
     } else if (strcasecmp(key, "METADATA") == 0) {
-        skip_metadata(r);
+        skip_metadata(l);
     } else if (strcasecmp(key, "LOOKUP_TABLE") == 0) {
         char name[64];
-        copy_word(r, &at, end, name, sizeof name);
+        copy_word(l, name, sizeof name);
         enum vtk_kind data = l->data;
         l->data = VTK_OTHER;
-        read_array(l, name, 4, next_count(r, &at, end, 0),
-                   nifti_type(l->binary ? IMAGE_UINT8 : IMAGE_FLOAT32));
+        read_array(l, name, 4, next_count(l, 0), nifti_type(l->binary ? IMAGE_UINT8 : IMAGE_FLOAT32));
         l->data = data;
-    } else if (!read_attribute(l, at, end)) {
-        msh_fail(r, "what this is, is not known: the file is damaged, or of another kind");
+    } else if (!read_attribute(l)) {
+        msh_fail(l->v.r, "what this is, is not known: the file is damaged, or of another kind");
     }
 }
 
@@ -334,22 +337,20 @@ static void read_keyword(struct legacy *l, const char *at, const char *end)
 static void read_head(struct legacy *l)
 {
     struct msh_reader *r = l->v.r;
-    const char *at = "", *end = at;
     char word[64];
-    (void)msh_next_line(r, &at, &end);
-    (void)msh_next_line(r, &at, &end);
-    first_word(r, &at, &end, word, sizeof word);
+    (void)(next_line(l) && next_line(l));
+    first_word(l, word, sizeof word);
     l->binary = strcasecmp(word, "BINARY") == 0;
     if (!l->binary && strcasecmp(word, "ASCII") != 0) {
         msh_fail(r, "the third line is neither ASCII nor BINARY");
     }
-    first_word(r, &at, &end, word, sizeof word);
+    first_word(l, word, sizeof word);
     if (strcasecmp(word, "FIELD") == 0) {
-        read_field(l, at, end);
-        first_word(r, &at, &end, word, sizeof word);
+        read_field(l);
+        first_word(l, word, sizeof word);
     }
     if (strcasecmp(word, "DATASET") == 0) {
-        copy_word(r, &at, end, word, sizeof word);
+        copy_word(l, word, sizeof word);
     }
     if (strcasecmp(word, "UNSTRUCTURED_GRID") != 0) {
         msh_fail(r, "'%s' is no UNSTRUCTURED_GRID: ParaView's filter Append Datasets makes one of it", word);
@@ -358,17 +359,16 @@ static void read_head(struct legacy *l)
 
 void vtk_read(struct msh_reader *r)
 {
-    struct legacy l = {.v = {.r = r}, .data = VTK_OF_FIELD};
-    const char *at, *end;
+    struct legacy l = {.v = {.r = r}, .data = VTK_OF_FIELD, .at = r->at, .end = r->at};
     input_at(r, "head", 0);
     read_head(&l);
     r->section = l.keyword;
     for (;;) {
-        first_word(r, &at, &end, l.keyword, sizeof l.keyword);
+        first_word(&l, l.keyword, sizeof l.keyword);
         if (l.keyword[0] == '\0') {
             break;
         }
-        read_keyword(&l, at, end);
+        read_keyword(&l);
     }
     vtk_build(&l.v);
 }

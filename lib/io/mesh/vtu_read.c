@@ -1,7 +1,8 @@
 /* Files of VTK in XML: unstructured grids, with data as text, in base64, or appended. */
 
 #include "io/mesh/vtk_input.h"
-#include "io/mesh/xml.h"
+
+#include "base/lists.h"
 
 #include <ctype.h>
 #include <stdio.h>
@@ -42,15 +43,25 @@ static int64_t decode(const char *at, const char *end, char *bytes)
     return count;
 }
 
+struct vtu {
+    struct vtk_input v;
+    char section[64]; /* "CellData" */
+    int pieces;
+    bool swap, compressed;
+    int word;            /* bytes of the numbers of heads */
+    struct vtk_array at; /* at hand */
+    char format[16];
+    int64_t appended_count, appended_room;
+    struct vtk_array *appended;
+};
+
 /* A number of the head; INT64_MAX: too large. */
-static int64_t head_word(const struct vtu_source *source, const char *bytes, int64_t index)
+static int64_t head_word(const struct vtu *u, const char *bytes, int64_t index)
 {
-    uint64_t number = 0;
-    for (int k = 0; k < source->word; k++) {
-        int from = source->swap ? k : source->word - 1 - k;
-        number = number << 8 | (unsigned char)bytes[index * source->word + from];
-    }
-    return number <= INT64_MAX ? (int64_t)number : INT64_MAX;
+    double number;
+    nifti_get(nifti_type(u->word == 8 ? IMAGE_UINT64 : IMAGE_UINT32),
+              (const unsigned char *)bytes + index * u->word, u->swap, 1, &number);
+    return number < 9e15 ? (int64_t)number : INT64_MAX;
 }
 
 static bool has_bytes(struct msh_reader *r, int64_t left, int64_t needed)
@@ -61,91 +72,45 @@ static bool has_bytes(struct msh_reader *r, int64_t left, int64_t needed)
     return r->status == STATUS_OK;
 }
 
-/* bytes[left]: the size of the data, and these. */
-static void copy(struct msh_reader *r, const struct vtu_source *source, const char *bytes, int64_t left,
-                 struct vtu_bytes *data)
-{
-    data->size = has_bytes(r, left, source->word) ? head_word(source, bytes, 0) : 0;
-    if (has_bytes(r, left - source->word, data->size)) {
-        MSH_NEW(r, &data->bytes, data->size);
-    }
-    if (r->status == STATUS_OK) {
-        memcpy(data->bytes, bytes + source->word, (size_t)data->size);
-    }
-}
-
 /* bytes[left]: the number of blocks, the size of each, that of the last if it is another (else 0), the
- * compressed sizes, and the blocks. More than has a place, or than zlib can have packed, is refused before
- * any is unpacked: zeros are packed a thousandfold. */
-static void unpack(struct msh_reader *r, const struct vtu_source *source, const char *bytes, int64_t left,
-                   struct vtu_bytes *data)
+ * compressed sizes, and the blocks. More than `most`, or than zlib can have packed, is refused before any is
+ * unpacked: zeros are packed a thousandfold. (*data)[*size]: to be freed, also on failure. */
+static void unpack(struct vtu *u, const char *bytes, int64_t left, int64_t most, char **data, int64_t *size)
 {
-    if (!has_bytes(r, left, 3L * source->word)) {
+    struct msh_reader *r = u->v.r;
+    if (!has_bytes(r, left, 3L * u->word)) {
         return;
     }
-    int64_t count = head_word(source, bytes, 0), size = head_word(source, bytes, 1),
-            last = head_word(source, bytes, 2), whole = 0;
+    int64_t count = head_word(u, bytes, 0), block = head_word(u, bytes, 1), last = head_word(u, bytes, 2),
+            whole = 0;
     bool is_short = count > 0 && last > 0;
-    if (count > left / source->word - 3 || last > size) {
-        msh_fail(r, "%jd blocks of %jd bytes cannot be in what is left of the file", count, size);
+    if (count > left / u->word - 3 || last > block) {
+        msh_fail(r, "%jd blocks of %jd bytes cannot be in what is left of the file", count, block);
         return;
     }
-    int64_t at = (3 + count) * source->word;
-    if (__builtin_mul_overflow(count - is_short, size, &whole) ||
-        __builtin_add_overflow(whole, is_short ? last : 0, &whole) || whole > source->most) {
-        msh_fail(r, "%jd blocks of %jd bytes are more than the %jd that its numbers take", count, size,
-                 source->most);
+    int64_t at = (3 + count) * u->word;
+    if (__builtin_mul_overflow(count - is_short, block, &whole) ||
+        __builtin_add_overflow(whole, is_short ? last : 0, &whole) || whole > most) {
+        msh_fail(r, "%jd blocks of %jd bytes are more than the %jd that its numbers take", count, block,
+                 most);
     } else if (whole / MOST_RATIO > left - at) {
         msh_fail(r, "a block of the compressed data is damaged");
     }
-    MSH_NEW(r, &data->bytes, whole);
-    for (int64_t b = data->size = 0; r->status == STATUS_OK && b < count; b++) {
-        int64_t packed = head_word(source, bytes, 3 + b);
-        uLongf wanted = (uLongf)(is_short && b == count - 1 ? last : size), got = wanted;
+    MSH_NEW(r, data, whole);
+    for (int64_t b = *size = 0; r->status == STATUS_OK && b < count; b++) {
+        int64_t packed = head_word(u, bytes, 3 + b);
+        uLongf wanted = (uLongf)(is_short && b == count - 1 ? last : block), got = wanted;
         packed = packed < left - at ? packed : left - at;
-        int result =
-            uncompress((Bytef *)data->bytes + data->size, &got, (const Bytef *)bytes + at, (uLong)packed);
+        int result = uncompress((Bytef *)*data + *size, &got, (const Bytef *)bytes + at, (uLong)packed);
         if (result == Z_MEM_ERROR) {
             r->status = fail_memory(r->error, "zlib");
         } else if (result != Z_OK || got != wanted) {
             msh_fail(r, "a block of the compressed data is damaged");
         }
         at += packed;
-        data->size += (int64_t)wanted;
+        *size += (int64_t)wanted;
     }
 }
-
-static void vtu_read_bytes(struct msh_reader *r, const struct vtu_source *source, struct vtu_bytes *data)
-{
-    SCRATCH char *decoded = NULL;
-    const char *bytes = source->at;
-    int64_t left = source->end - source->at;
-    if (source->base64) {
-        MSH_NEW(r, &decoded, left / 4 * 3 + 3);
-        left = r->status == STATUS_OK ? decode(source->at, source->end, decoded) : 0;
-        bytes = decoded;
-    }
-    (source->compressed ? unpack : copy)(r, source, bytes, left, data);
-}
-
-/* An array that is to be read. */
-struct vtu_array {
-    struct vtk_array array;
-    const struct nifti_type *type; /* NULL: it is not read */
-    int64_t offset, expected;      /* numbers, -1: as many as there are */
-};
-
-struct vtu {
-    struct vtk_input v;
-    char section[64]; /* "CellData" */
-    int pieces;
-    bool swap, compressed;
-    int word;            /* bytes of the numbers of heads */
-    struct vtu_array at; /* at hand */
-    char format[16];
-    int64_t appended_count, appended_room;
-    struct vtu_array *appended;
-};
 
 static int64_t number_of(struct vtu *u, const char **attributes, const char *name, int64_t otherwise)
 {
@@ -188,8 +153,7 @@ static void find_kind(struct vtu *u, const char **attributes)
                  {"Cells", "offsets", VTK_OFFSETS}, {"Cells", "types", VTK_TYPES},
                  {"CellData", NULL, VTK_OF_CELLS},  {"PointData", NULL, VTK_OF_POINTS},
                  {"FieldData", NULL, VTK_OF_FIELD}};
-    int64_t points = u->v.point_count * u->at.array.components,
-            cells = u->v.cell_count * u->at.array.components;
+    int64_t points = u->v.point_count * u->at.components, cells = u->v.cell_count * u->at.components;
     const int64_t expected[] = {-1,
                                 points,
                                 -1,
@@ -197,15 +161,15 @@ static void find_kind(struct vtu *u, const char **attributes)
                                 u->v.cell_count,
                                 cells,
                                 points,
-                                u->at.array.components * number_of(u, attributes, "NumberOfTuples", 1)};
-    u->at.array.kind = VTK_OTHER;
+                                u->at.components * number_of(u, attributes, "NumberOfTuples", 1)};
+    u->at.kind = VTK_OTHER;
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
         if (strcmp(u->section, kinds[i].section) == 0 &&
-            (kinds[i].name == NULL || strcmp(u->at.array.name, kinds[i].name) == 0)) {
-            u->at.array.kind = kinds[i].kind;
+            (kinds[i].name == NULL || strcmp(u->at.name, kinds[i].name) == 0)) {
+            u->at.kind = kinds[i].kind;
         }
     }
-    u->at.expected = expected[u->at.array.kind];
+    u->at.count = expected[u->at.kind];
 }
 
 static void begin_array(struct vtu *u, const char **attributes)
@@ -213,21 +177,20 @@ static void begin_array(struct vtu *u, const char **attributes)
     struct msh_reader *r = u->v.r;
     const char *name = xml_attribute(attributes, "Name"), *type = xml_attribute(attributes, "type"),
                *format = xml_attribute(attributes, "format");
-    if (snprintf(u->at.array.name, sizeof u->at.array.name, "%s", name != NULL ? name : u->section) >
-        INPUT_NAME) {
+    if (snprintf(u->at.name, sizeof u->at.name, "%s", name != NULL ? name : u->section) > INPUT_NAME) {
         msh_fail(r, "the name '%.40s...' is longer than %d bytes", name, INPUT_NAME);
     }
     snprintf(u->format, sizeof u->format, "%s", format != NULL ? format : "ascii");
-    u->at.array.components = number_of(u, attributes, "NumberOfComponents", 1);
-    u->at.array.components += u->at.array.components == 0;
+    u->at.components = number_of(u, attributes, "NumberOfComponents", 1);
+    u->at.components += u->at.components == 0;
     find_kind(u, attributes);
     u->at.offset = number_of(u, attributes, "offset", 0);
     u->at.type = nifti_type_named(NUMBERS_OF_VTU, type != NULL ? type : "");
-    if (u->at.type == NULL && u->at.array.kind >= VTK_POINTS && u->at.array.kind <= VTK_TYPES) {
-        msh_fail(r, "%s: numbers of type '%s' are not read", u->at.array.name, type != NULL ? type : "");
-    } else if (u->at.array.kind == VTK_POINTS && u->at.array.components != 3) {
-        msh_fail(r, "points of %jd coordinates, not 3", u->at.array.components);
-    } else if (u->at.array.kind == VTK_OTHER || !vtk_is_wanted(&u->v, &u->at.array, u->at.type)) {
+    if (u->at.type == NULL && u->at.kind >= VTK_POINTS && u->at.kind <= VTK_TYPES) {
+        msh_fail(r, "%s: numbers of type '%s' are not read", u->at.name, type != NULL ? type : "");
+    } else if (u->at.kind == VTK_POINTS && u->at.components != 3) {
+        msh_fail(r, "points of %jd coordinates, not 3", u->at.components);
+    } else if (u->at.kind == VTK_OTHER || !vtk_is_wanted(&u->v, &u->at)) {
         u->at.type = NULL;
     }
 }
@@ -255,32 +218,34 @@ static void begin(void *context, const char *name, const char **attributes, int 
 
 /* ---- data ---- */
 
-/* Most numbers of the array at hand: the nodes of a cell are at most 27. */
-static int64_t most_numbers(const struct vtu *u)
-{
-    return u->at.expected >= 0 ? u->at.expected : 27 * u->v.cell_count;
-}
-
-/* Read the array at hand from the bytes there. */
+/* Read the array at hand from the bytes there. Uncompressed they are the size of the data, and these. */
 static void read_binary(struct vtu *u, const char *at, const char *end, bool base64)
 {
     struct msh_reader *r = u->v.r;
-    struct vtu_source source = {at, end, base64, u->swap, u->compressed, u->word, INT64_MAX};
-    struct vtu_bytes data = {0};
-    int64_t most;
-    if (!__builtin_mul_overflow(most_numbers(u), u->at.type->bytes, &most)) {
-        source.most = most;
+    SCRATCH char *decoded = NULL, *unpacked = NULL;
+    int64_t left = end - at, size = u->at.type->bytes, bytes = 0, most;
+    if (base64) {
+        MSH_NEW(r, &decoded, left / 4 * 3 + 3);
+        left = r->status == STATUS_OK ? decode(at, end, decoded) : 0;
+        at = decoded;
     }
-    vtu_read_bytes(r, &source, &data);
-    int64_t size = u->at.type->bytes, count = u->at.expected < 0 ? data.size / size : u->at.expected;
-    if (count > data.size / size || count * size != data.size) {
-        msh_fail(r, "%s: %jd bytes, not %jd numbers of %jd", u->at.array.name, data.size, count, size);
+    if (u->compressed) { /* the nodes of a cell are at most 27 */
+        bool many =
+            __builtin_mul_overflow(u->at.count >= 0 ? u->at.count : 27 * u->v.cell_count, size, &most);
+        unpack(u, at, left, many ? INT64_MAX : most, &unpacked, &bytes);
+        at = unpacked;
+    } else {
+        bytes = has_bytes(r, left, u->word) ? head_word(u, at, 0) : 0;
+        at += has_bytes(r, left - u->word, bytes) ? u->word : 0;
     }
-    struct vtk_array *array = vtk_add(&u->v, &u->at.array, count);
+    int64_t count = u->at.count < 0 ? bytes / size : u->at.count;
+    if (count > bytes / size || count * size != bytes) {
+        msh_fail(r, "%s: %jd bytes, not %jd numbers of %jd", u->at.name, bytes, count, size);
+    }
+    struct vtk_array *array = vtk_add(&u->v, &u->at, count);
     if (array != NULL) {
-        nifti_get(u->at.type, (const unsigned char *)data.bytes, u->swap, (size_t)count, array->value);
+        nifti_get(array->type, (const unsigned char *)at, u->swap, (size_t)count, array->value);
     }
-    free(data.bytes);
 }
 
 static void read_text(struct vtu *u, const char *text, const char *end)
@@ -291,12 +256,12 @@ static void read_text(struct vtu *u, const char *text, const char *end)
     while (input_word(&at, end, ',', &length) != NULL) {
         count++;
     }
-    if (u->at.expected >= 0 && count != u->at.expected) {
-        msh_fail(r, "%s: %jd numbers, not %jd", u->at.array.name, count, u->at.expected);
+    if (u->at.count >= 0 && count != u->at.count) {
+        msh_fail(r, "%s: %jd numbers, not %jd", u->at.name, count, u->at.count);
     }
-    struct vtk_array *array = vtk_add(&u->v, &u->at.array, count);
+    struct vtk_array *array = vtk_add(&u->v, &u->at, count);
     if (array != NULL) {
-        vtk_fill_text(r, array, u->at.type, &text, end);
+        vtk_fill_text(r, array, &text, end);
     }
 }
 
@@ -318,16 +283,15 @@ static void end(void *context, const char *name, const char *text, int64_t size,
             u->appended[u->appended_count++] = u->at;
         }
     } else {
-        msh_fail(r, "%s: format '%s' is none of ascii, binary, appended", u->at.array.name, u->format);
+        msh_fail(r, "%s: format '%s' is none of ascii, binary, appended", u->at.name, u->format);
     }
     u->at.type = NULL;
 }
 
 static int compare_offsets(const void *left, const void *right)
 {
-    const struct vtu_array *a = left, *b = right;
-    return a->offset != b->offset ? (a->offset > b->offset) - (a->offset < b->offset)
-                                  : strcmp(a->array.name, b->array.name);
+    const struct vtk_array *a = left, *b = right;
+    return a->offset != b->offset ? compare_int64(&a->offset, &b->offset) : strcmp(a->name, b->name);
 }
 
 /* Read the appended data: behind the tag, which may be followed by blanks, and '_'. Arrays do not share their
@@ -354,7 +318,7 @@ static void read_appended(struct vtu *u)
         u->at = u->appended[i];
         if (u->at.offset >= end) {
             msh_fail(r, "%s: its offset %jd is behind the end of the file, or is also that of another array",
-                     u->at.array.name, u->at.offset);
+                     u->at.name, u->at.offset);
         } else {
             read_binary(u, data + u->at.offset, data + end, base64);
         }

@@ -1,4 +1,4 @@
-#include "io/mesh/xml.h"
+#include "io/mesh/msh_private.h"
 
 #include <expat.h>
 #include <string.h>

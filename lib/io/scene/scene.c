@@ -1,13 +1,165 @@
-#include "io/scene/scene.h"
-
-#include "base/memory.h"
-#include "io/scene/scene_ini.h"
 #include "io/scene/scene_private.h"
 
+#include "base/memory.h"
+#include "io/files/textfile.h"
+
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <zlib.h>
 
 /* Steps of a quasi-static scene: of time, without prony; without duration, with friction, of the load. */
 static const int64_t usual_time_steps = 50, usual_increments = 20;
+
+/* ---- the lines of the file ---- */
+
+enum { FILE_LIMIT = 64 << 10 };
+
+/* A file that is being read. */
+struct reading {
+    struct scene *scene;
+    struct ini_section *sections; /* count; kind and name together differ */
+    int64_t count, line;          /* line: number of that at hand, from 1 */
+    struct error *error;
+};
+
+static bool is_blank(char c)
+{
+    return c == ' ' || c == '\t';
+}
+
+void ini_trim(char *text)
+{
+    size_t length = strlen(text);
+    while (length > 0 && is_blank(text[length - 1])) {
+        text[--length] = '\0';
+    }
+}
+
+static enum status fail_line(struct reading *reading, const char *what)
+{
+    return fail(reading->error, STATUS_INPUT, "%s:%jd: %s", reading->scene->path, reading->line, what);
+}
+
+static char *content(char *line)
+{
+    for (size_t i = 0; line[i] != '\0'; i++) {
+        if ((line[i] == '#' || line[i] == ';') && (i == 0 || is_blank(line[i - 1]))) {
+            line[i] = '\0';
+            break;
+        }
+    }
+    ini_trim(line);
+    return line + strspn(line, " \t");
+}
+
+const struct ini_entry *ini_find(const struct ini_section *section, const char *key)
+{
+    for (int64_t e = 0; e < section->entry_count; e++) {
+        if (strcmp(section->entries[e].key, key) == 0) {
+            return &section->entries[e];
+        }
+    }
+    return NULL;
+}
+
+static bool is_word(const char *text)
+{
+    static const char allowed[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_.-";
+    return text[0] != '\0' && text[strspn(text, allowed)] == '\0';
+}
+
+/* Append the section of a header line `[kind NAME]`. */
+static enum status add_section(struct reading *reading, char *header)
+{
+    char *end = header + strlen(header) - 1, *kind = header + 1, *name = kind + strcspn(kind, " \t]");
+    if (*end != ']') {
+        return fail_line(reading, "section header is not [kind] or [kind NAME]");
+    }
+    *end = '\0';
+    while (is_blank(*name)) {
+        *name++ = '\0';
+    }
+    if (!is_word(kind) || (*name != '\0' && !is_word(name))) {
+        return fail_line(reading,
+                         "section header is not [kind] or [kind NAME] of letters, digits, '_', '.', '-'");
+    }
+    for (int64_t s = 0; s < reading->count; s++) {
+        const struct ini_section *other = &reading->sections[s];
+        if (strcmp(other->kind, kind) == 0 && strcmp(other->name, name) == 0) {
+            return fail(reading->error, STATUS_INPUT, "%s:%jd: [%s%s%s]: already in line %jd: join the two",
+                        reading->scene->path, reading->line, kind, *name != '\0' ? " " : "", name,
+                        other->line);
+        }
+    }
+    RETURN_IF_ERROR(RESIZE_ARRAY(&reading->sections, reading->count + 1, reading->error));
+    reading->sections[reading->count++] =
+        (struct ini_section){.kind = kind, .name = name, .line = reading->line};
+    return STATUS_OK;
+}
+
+static enum status add_entry(struct reading *reading, char *key)
+{
+    char *value = strchr(key, '='), what[64] = "has no value";
+    if (value == NULL) {
+        return fail_line(reading, "neither [kind NAME], nor key = value, nor a comment");
+    }
+    *value++ = '\0';
+    ini_trim(key);
+    value += strspn(value, " \t");
+    if (!is_word(key)) {
+        return fail_line(reading, "key before '=' is not one word of letters, digits, '_', '.', '-'");
+    }
+    if (reading->count == 0) {
+        return fail_line(reading, "stands before the first [section]");
+    }
+    struct ini_section *section = &reading->sections[reading->count - 1];
+    const struct ini_entry *other = ini_find(section, key);
+    if (other != NULL) {
+        snprintf(what, sizeof what, "already in line %jd", other->line);
+    }
+    if (other != NULL || *value == '\0') {
+        return fail(reading->error, STATUS_INPUT, "%s:%jd: [%s%s%s]: %s: %s", reading->scene->path,
+                    reading->line, section->kind, *section->name ? " " : "", section->name, key, what);
+    }
+    RETURN_IF_ERROR(RESIZE_ARRAY(&section->entries, section->entry_count + 1, reading->error));
+    section->entries[section->entry_count++] = (struct ini_entry){key, value, reading->line};
+    return STATUS_OK;
+}
+
+/* Read the lines of the file. Errors, as `FILE:LINE: ...`: those of textfile_read; STATUS_INPUT for headers
+ * that are not `[kind]` or `[kind NAME]`, keys without value or outside of a section, and repeated ones. */
+static enum status read_lines(struct reading *reading)
+{
+    struct scene *scene = reading->scene;
+    FREED_BY(textfile_free) struct textfile text = {0};
+    char *path = strdup(scene->path);
+    RETURN_IF_ERROR(owned_add(&scene->owned, path, scene->path, reading->error));
+    scene->path = path;
+    RETURN_IF_ERROR(textfile_read(path, FILE_LIMIT, &text, reading->error));
+    scene->checksum = (uint32_t)crc32(0, (const unsigned char *)text.text, (unsigned)text.size);
+    char *rest = text.text;
+    RETURN_IF_ERROR(owned_add(&scene->owned, array_take(&text.text), path, reading->error));
+    for (char *line; (line = strsep(&rest, "\n")) != NULL;) {
+        reading->line++;
+        line = content(line);
+        if (*line != '\0') {
+            RETURN_IF_ERROR(*line == '[' ? add_section(reading, line) : add_entry(reading, line));
+        }
+    }
+    return STATUS_OK;
+}
+
+static void reading_free(struct reading *reading)
+{
+    for (int64_t s = 0; s < reading->count; s++) {
+        free(reading->sections[s].entries);
+    }
+    free(reading->sections);
+}
+
+/* ---- the sections ---- */
 
 /* Append *added, zero except for its label. */
 static enum status add_item(const struct place *place, const struct scene_kind *kind, struct scene *scene,
@@ -59,19 +211,19 @@ static enum status read_section(const struct place *place, struct scene *scene)
 }
 
 /* Read [scene] first: the other sections depend on its dimension and analysis. */
-static enum status read_sections(const struct ini_file *file, struct scene *scene, struct error *error)
+static enum status read_sections(const struct reading *reading)
 {
+    struct scene *scene = reading->scene;
     for (int round = 0; round < 2; round++) {
-        for (int64_t s = 0; s < file->section_count; s++) {
-            struct place place = {
-                .file = file, .section = &file->sections[s], .scene = scene, .error = error};
+        for (int64_t s = 0; s < reading->count; s++) {
+            struct place place = {.section = &reading->sections[s], .scene = scene, .error = reading->error};
             if ((strcmp(place.section->kind, "scene") == 0) == (round == 0)) {
                 RETURN_IF_ERROR(read_section(&place, scene));
             }
         }
         if (scene->dim == 0) {
-            return fail(error, STATUS_INPUT, "%s: no section [scene]: begin with [scene], dim and analysis",
-                        file->path);
+            return fail(reading->error, STATUS_INPUT,
+                        "%s: no section [scene]: begin with [scene], dim and analysis", scene->path);
         }
     }
     return STATUS_OK;
@@ -139,6 +291,9 @@ static enum status check_steps(struct scene *scene, struct error *error)
 
 static enum status check_whole(struct scene *scene, struct error *error)
 {
+    if (!(scene->solver.time_step_margin > 0.0)) { /* dynamic steps must be accurate, not only stable */
+        scene->solver.time_step_margin = scene->analysis == SCENE_DYNAMIC ? .75 : .9;
+    }
     if (scene->duration > 0.0 && !has_prony(scene) && !scene->tabulated) {
         return fail(error, STATUS_INPUT,
                     "%s: [scene]: duration: of no use: no material has prony, and no curve a table in s",
@@ -155,22 +310,13 @@ static enum status check_whole(struct scene *scene, struct error *error)
     return check_regions(scene, error);
 }
 
-static enum status read_file(struct ini_file *file, struct scene *scene, struct error *error)
-{
-    char *path = strdup(scene->path);
-    RETURN_IF_ERROR(owned_add(&scene->owned, path, scene->path, error));
-    scene->path = path;
-    return ini_read(path, &scene->owned, file, error);
-}
-
 enum status scene_read(const char *path, struct scene *scene, struct error *error)
 {
-    FREED_BY(ini_free) struct ini_file file = {0};
+    FREED_BY(reading_free) struct reading reading = {.scene = scene, .error = error};
     *scene = (struct scene){.path = path, .title = ""};
-    scene->solver = (struct scene_solver){.tolerance = 1e-5, .time_step_margin = .9};
-    RETURN_IF_ERROR(read_file(&file, scene, error));
-    scene->checksum = file.checksum;
-    RETURN_IF_ERROR(read_sections(&file, scene, error));
+    scene->solver = (struct scene_solver){.tolerance = 1e-5};
+    RETURN_IF_ERROR(read_lines(&reading));
+    RETURN_IF_ERROR(read_sections(&reading));
     return check_whole(scene, error);
 }
 

@@ -7,27 +7,41 @@
 
 #define KEYS (const char *const[])
 
-/* ---- checks of the keys of a section together, after all have been read ---- */
-
-static enum status check_scene(const struct place *place, struct scene *scene)
+/* text[size] = "a, b, c" from a NULL-terminated list. */
+static void join(const char *const words[], char *text, size_t size)
 {
-    (void)place;
-    if (scene->analysis == SCENE_DYNAMIC) { /* steps must be accurate, not only stable */
-        scene->solver.time_step_margin = 0.75;
+    text[0] = '\0';
+    for (int i = 0; words[i] != NULL; i++) {
+        text_append(text, size, "%s%s", i > 0 ? ", " : "", words[i]);
     }
-    return STATUS_OK;
 }
+
+/* STATUS_INPUT unless exactly one of the keys is present. */
+static enum status require_one(const struct place *place, const char *const keys[])
+{
+    int count = 0;
+    for (int i = 0; keys[i] != NULL; i++) {
+        count += place_has(place, keys[i]);
+    }
+    char list[256];
+    join(keys, list, sizeof list);
+    return count == 1
+               ? STATUS_OK
+               : place_fail(place, NULL, "%s of %s: give exactly one", count == 0 ? "none" : "several", list);
+}
+
+/* ---- checks of the keys of a section together, after all have been read ---- */
 
 static enum status check_displacement(const struct place *place, struct scene *scene)
 {
     struct scene_displacement *displacement = &scene->displacements[scene->displacement_count - 1];
     const bool *is_free = displacement->condition.is_free;
-    RETURN_IF_ERROR(place_require_one(place, KEYS{"facets", "nodes", "points", NULL}));
+    RETURN_IF_ERROR(require_one(place, KEYS{"facets", "nodes", "points", NULL}));
     if (place_has(place, "points")) {
         displacement->condition.kind = CONDITION_POINTS;
         return STATUS_OK;
     }
-    RETURN_IF_ERROR(place_require_one(place, KEYS{"table", "components", "normal", NULL}));
+    RETURN_IF_ERROR(require_one(place, KEYS{"table", "components", "normal", NULL}));
     displacement->condition.kind = place_has(place, "normal")  ? CONDITION_NORMAL
                                    : place_has(place, "table") ? CONDITION_TABLE
                                                                : displacement->condition.kind;
@@ -97,7 +111,7 @@ static enum status check_load(const struct place *place, struct scene *scene)
         load->kind++;
     }
     if (load->kind == LOAD_PRESSURE) {
-        RETURN_IF_ERROR(place_require_one(place, KEYS{"value", "density", NULL}));
+        RETURN_IF_ERROR(require_one(place, KEYS{"value", "density", NULL}));
     }
     return place_has(place, "density")
                ? place_require(place, "level", "give a place at the level of the fluid, m")
@@ -296,7 +310,7 @@ static const struct scene_key solver_keys[] = {
     true, offsetof(struct scene, items), offsetof(struct scene, count), sizeof *((struct scene *)0)->items
 
 static const struct scene_kind kinds[] = {
-    {"scene", scene_keys, check_scene, false, 0, 0, 0},
+    {"scene", scene_keys, NULL, false, 0, 0, 0},
     {"material", material_keys, scene_material_check, ITEMS(materials, material_count)},
     {"displacement", displacement_keys, check_displacement, ITEMS(displacements, displacement_count)},
     {"contact", contact_keys, check_contact, ITEMS(contacts, contact_count)},
@@ -313,20 +327,34 @@ enum { KIND_COUNT = sizeof kinds / sizeof kinds[0], MOST_KEYS = 64 };
 
 enum status scene_kind_find(const struct place *place, const struct scene_kind **kind)
 {
-    const char *names[KIND_COUNT + 1] = {NULL}, *keys[MOST_KEYS] = {NULL};
-    for (int k = 0; k < KIND_COUNT; k++) {
-        names[k] = kinds[k].name;
-        if (strcmp(kinds[k].name, place->section->kind) == 0) {
-            *kind = &kinds[k];
-            int count = 0;
-            for (; kinds[k].keys[count].name != NULL; count++) {
-                keys[count] = kinds[k].keys[count].name;
-            }
-            if (kinds[k].keys == material_keys) {
-                scene_material_list_keys(keys, count, MOST_KEYS - 1);
-            }
-            return place_only_keys(place, keys);
+    const char *keys[MOST_KEYS] = {NULL};
+    char list[320];
+    const struct ini_section *section = place->section;
+    int k = 0, count = 0;
+    for (; k < KIND_COUNT && strcmp(kinds[k].name, section->kind) != 0; k++) {
+        keys[k] = kinds[k].name;
+    }
+    if (k == KIND_COUNT) {
+        join(keys, list, sizeof list);
+        return place_fail(place, NULL, "unknown section: allowed are %s", list);
+    }
+    *kind = &kinds[k];
+    for (; kinds[k].keys[count].name != NULL; count++) {
+        keys[count] = kinds[k].keys[count].name;
+    }
+    keys[count] = NULL;
+    if (kinds[k].keys == material_keys) {
+        scene_material_list_keys(keys, count, MOST_KEYS - 1);
+    }
+    join(keys, list, sizeof list);
+    for (int64_t e = 0; e < section->entry_count; e++) {
+        int i = 0;
+        while (keys[i] != NULL && strcmp(keys[i], section->entries[e].key) != 0) {
+            i++;
+        }
+        if (keys[i] == NULL) {
+            return place_fail(place, section->entries[e].key, "unknown key: allowed are %s", list);
         }
     }
-    return place_unknown(place, NULL, "section", names);
+    return STATUS_OK;
 }

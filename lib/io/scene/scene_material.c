@@ -157,12 +157,6 @@ static enum status set_law(const struct place *place, struct scene_material *sec
     return section->table != NULL ? STATUS_OK : set_moduli(place, shear, section);
 }
 
-static enum status forbid_fibres(const struct place *place)
-{
-    static const char *const keys[] = {"fibre", "fibres", "fibre_plane", NULL};
-    return place_forbid_all(place, keys, "the law has no fibres, and no active stress is given");
-}
-
 /* The directions of the fibres, where the law has some: for the region, in a table, or of the stream. */
 static enum status set_fibres(const struct place *place, const struct law *law, int dim,
                               struct scene_material *section)
@@ -190,20 +184,17 @@ static enum status set_fibres(const struct place *place, const struct law *law, 
     return good ? STATUS_OK : place_fail(place, "fibre_plane", "has no direction other than fibre");
 }
 
-/* Without motion and weight the density has no effect, and need not be given. */
-static bool is_density_felt(const struct scene *scene)
-{
-    return scene->analysis == SCENE_DYNAMIC || fabs(scene->gravity[0]) > 0.0 ||
-           fabs(scene->gravity[1]) > 0.0 || fabs(scene->gravity[2]) > 0.0;
-}
-
 enum status scene_material_check(const struct place *place, struct scene *scene)
 {
-    static const char *const moduli[] = {"E", "nu", "kappa", "D", NULL};
+    static const char *const moduli[] = {"E", "nu", "kappa", "D", NULL}, *const fibres[] = {"fibre", "fibres",
+                                                                                            "fibre_plane",
+                                                                                            NULL};
+    const double *gravity = scene->gravity;
     struct scene_material *section = &scene->materials[scene->material_count - 1];
     RETURN_IF_ERROR(find_law(place, section));
     RETURN_IF_ERROR(check_foreign(place, material_laws[section->material.model]));
-    if (is_density_felt(scene)) {
+    /* Without motion and weight the density has no effect, and need not be given. */
+    if (scene->analysis == SCENE_DYNAMIC || fabs(gravity[0]) + fabs(gravity[1]) + fabs(gravity[2]) > 0.0) {
         RETURN_IF_ERROR(place_require(place, "rho", "give the density in kg/m3"));
     }
     if (!place_has(place, "rho")) {
@@ -213,9 +204,10 @@ enum status scene_material_check(const struct place *place, struct scene *scene)
     if (scene->analysis == SCENE_QUASI_STATIC && section->prony.terms > 0 && !(scene->duration > 0.0)) {
         return place_fail(place, "prony", "the scene has no time: give duration in [scene], s");
     }
-    RETURN_IF_ERROR(law->has_fibres || place_has(place, "active")
-                        ? set_fibres(place, law, scene->dim, section)
-                        : forbid_fibres(place));
+    RETURN_IF_ERROR(
+        law->has_fibres || place_has(place, "active")
+            ? set_fibres(place, law, scene->dim, section)
+            : place_forbid_all(place, fibres, "the law has no fibres, and no active stress is given"));
     if (section->table != NULL) {
         RETURN_IF_ERROR(place_forbid_all(place, moduli, "the table gives E and nu"));
     }

@@ -5,13 +5,32 @@
 
 #include "base/status.h"
 #include "io/scene/scene.h"
-#include "io/scene/scene_ini.h"
 
 #include <stdbool.h>
 
+struct ini_entry {
+    const char *key;
+    char *value; /* not empty, without blanks at its ends; readers may modify it */
+    int64_t line;
+};
+
+/* `[kind NAME]` or `[kind]`, without interpretation. */
+struct ini_section {
+    const char *kind;
+    const char *name; /* "" if the header has none */
+    int64_t line;
+    struct ini_entry *entries; /* keys differ */
+    int64_t entry_count;
+};
+
+/* The entry of that key, or NULL. */
+const struct ini_entry *ini_find(const struct ini_section *section, const char *key);
+
+/* Cut the blanks off the end of a text. */
+void ini_trim(char *text);
+
 /* The section under interpretation. */
 struct place {
-    const struct ini_file *file;
     const struct ini_section *section;
     struct scene *scene; /* owns texts and lists */
     struct error *error;
@@ -74,16 +93,6 @@ MUST_CHECK enum status place_forbid(const struct place *place, const char *key, 
 
 /* The same of all keys of a NULL-terminated list. */
 MUST_CHECK enum status place_forbid_all(const struct place *place, const char *const keys[], const char *why);
-
-/* STATUS_INPUT unless exactly one of the keys (a NULL-terminated list) is present. */
-MUST_CHECK enum status place_require_one(const struct place *place, const char *const keys[]);
-
-/* The error that a key, or with key NULL the section itself, is not in a NULL-terminated list. */
-enum status place_unknown(const struct place *place, const char *key, const char *what,
-                          const char *const allowed[]);
-
-/* STATUS_INPUT unless all keys of the section are among `keys` (a NULL-terminated list). */
-MUST_CHECK enum status place_only_keys(const struct place *place, const char *const keys[]);
 
 /* Print a text, which the scene owns. */
 MUST_CHECK enum status place_print(const struct place *place, char **text, const char *format, ...)

@@ -16,7 +16,7 @@ static enum status fail_at(const struct place *place, const char *key, enum stat
 {
     const struct ini_section *section = place->section;
     const struct ini_entry *entry = key != NULL ? ini_find(section, key) : NULL;
-    return fail_in(place->error, status, "%s:%jd: [%s%s%s]", place->file->path,
+    return fail_in(place->error, status, "%s:%jd: [%s%s%s]", place->scene->path,
                    (entry != NULL ? entry->line : section->line), section->kind,
                    section->name[0] != '\0' ? " " : "", section->name);
 }
@@ -51,51 +51,6 @@ enum status place_forbid_all(const struct place *place, const char *const keys[]
 {
     for (int i = 0; keys[i] != NULL; i++) {
         RETURN_IF_ERROR(place_forbid(place, keys[i], why));
-    }
-    return STATUS_OK;
-}
-
-/* text[size] = "a, b, c" from a NULL-terminated list. */
-static void join(const char *const words[], char *text, size_t size)
-{
-    text[0] = '\0';
-    for (int i = 0; words[i] != NULL; i++) {
-        text_append(text, size, "%s%s", i > 0 ? ", " : "", words[i]);
-    }
-}
-
-enum status place_require_one(const struct place *place, const char *const keys[])
-{
-    int count = 0;
-    for (int i = 0; keys[i] != NULL; i++) {
-        count += place_has(place, keys[i]);
-    }
-    char list[256];
-    join(keys, list, sizeof list);
-    return count == 1
-               ? STATUS_OK
-               : place_fail(place, NULL, "%s of %s: give exactly one", count == 0 ? "none" : "several", list);
-}
-
-enum status place_unknown(const struct place *place, const char *key, const char *what,
-                          const char *const allowed[])
-{
-    char list[320];
-    join(allowed, list, sizeof list);
-    return place_fail(place, key, "unknown %s: allowed are %s", what, list);
-}
-
-enum status place_only_keys(const struct place *place, const char *const keys[])
-{
-    for (int64_t e = 0; e < place->section->entry_count; e++) {
-        int i = 0;
-        const char *key = place->section->entries[e].key;
-        while (keys[i] != NULL && strcmp(keys[i], key) != 0) {
-            i++;
-        }
-        if (keys[i] == NULL) {
-            return place_unknown(place, key, "key", keys);
-        }
     }
     return STATUS_OK;
 }
@@ -150,37 +105,32 @@ static enum status read_number(const struct place *place, const char *key, const
     return read_within(place, key, text, ranges[type], value);
 }
 
-static enum status read_count(const struct place *place, const char *key, const char *text, int64_t least,
-                              int64_t most, int64_t *value)
-{
-    return fail_at(place, key, parse_integer(text, key, least, most, value, place->error));
-}
-
-static enum status read_dim(const struct place *place, const char *key, const char *text, int *dim)
-{
-    int64_t value = 0;
-    RETURN_IF_ERROR(read_count(place, key, text, 2, 3, &value));
-    *dim = (int)value;
-    return STATUS_OK;
-}
-
-static enum status read_choice(const struct place *place, const char *key, const char *text,
-                               const char *const words[], int *index)
-{
-    int count = 0;
-    while (words[count] != NULL) {
-        count++;
-    }
-    return fail_at(place, key, parse_choice(text, key, words, count, index, place->error));
-}
-
-static enum status read_yes(const struct place *place, const char *key, const char *text,
-                            const char *const words[], bool *value)
+/* Read a whole number, or a word, of which there are some: its index. */
+static enum status read_whole(const struct place *place, const struct scene_key *key, const char *text,
+                              void *value)
 {
     static const char *const no_yes[] = {"no", "yes", NULL};
-    int index;
-    RETURN_IF_ERROR(read_choice(place, key, text, words != NULL ? words : no_yes, &index));
-    *value = index == 1;
+    const char *const *words = key->words != NULL ? key->words : no_yes;
+    bool is_dim = key->type == VALUE_DIM;
+    int64_t number = 0;
+    int index = 0, count = 0;
+    if (is_dim || key->type == VALUE_COUNT) {
+        RETURN_IF_ERROR(fail_at(place, key->name,
+                                parse_integer(text, key->name, is_dim ? 2 : 1, is_dim ? 3 : key->most,
+                                              is_dim ? &number : value, place->error)));
+        index = (int)number;
+    } else {
+        while (words[count] != NULL) {
+            count++;
+        }
+        RETURN_IF_ERROR(
+            fail_at(place, key->name, parse_choice(text, key->name, words, count, &index, place->error)));
+    }
+    if (key->type == VALUE_YES) {
+        *(bool *)value = index == 1;
+    } else if (key->type != VALUE_COUNT) {
+        *(int *)value = index;
+    }
     return STATUS_OK;
 }
 
@@ -256,7 +206,7 @@ static enum status read_names(const struct place *place, const char *key, char *
 {
     char *item;
     list->names = array_new((int64_t)strlen(rest) + 1, sizeof *list->names); /* more than enough */
-    RETURN_IF_ERROR(owned_add(&place->scene->owned, list->names, place->file->path, place->error));
+    RETURN_IF_ERROR(owned_add(&place->scene->owned, list->names, place->scene->path, place->error));
     while ((item = next_item(&rest)) != NULL) {
         if (item[0] == '\0') {
             return place_fail(place, key, "has an empty name: write names with single commas between");
@@ -277,14 +227,14 @@ enum status place_print(const struct place *place, char **text, const char *form
     va_start(arguments, format);
     *text = vasprintf(text, format, arguments) < 0 ? NULL : *text;
     va_end(arguments);
-    return owned_add(&place->scene->owned, *text, place->file->path, place->error);
+    return owned_add(&place->scene->owned, *text, place->scene->path, place->error);
 }
 
 /* Read the name of a file, and add it to the files of the scene. */
 static enum status read_file(const struct place *place, const char *text, const char **path)
 {
     struct name_list *files = &place->scene->files;
-    const char *scene = place->file->path, *slash = strrchr(scene, '/');
+    const char *scene = place->scene->path, *slash = strrchr(scene, '/');
     int folder = text[0] != '/' && slash != NULL ? (int)(slash - scene) + 1 : 0;
     RETURN_IF_ERROR(RESIZE_ARRAY(&files->names, files->count + 1, place->error));
     char **name = &files->names[files->count];
@@ -361,13 +311,10 @@ enum status place_read(const struct place *place, const struct scene_key *key, i
     case VALUE_SHARE:
         return read_number(place, key->name, text, key->type, value);
     case VALUE_DIM:
-        return read_dim(place, key->name, text, value);
     case VALUE_COUNT:
-        return read_count(place, key->name, text, 1, key->most, value);
     case VALUE_CHOICE:
-        return read_choice(place, key->name, text, key->words, value);
     case VALUE_YES:
-        return read_yes(place, key->name, text, key->words, value);
+        return read_whole(place, key, text, value);
     case VALUE_VECTOR:
         return read_vector(place, key->name, text, dim, value, is_free);
     case VALUE_NAMES:

@@ -105,15 +105,23 @@ static const char *find_attribute(const char *attributes, const char *key, size_
     return NULL;
 }
 
+static bool has_control(const char *text)
+{
+    for (; *text != '\0'; text++) {
+        if ((unsigned char)*text < 0x20 || *text == 0x7f) {
+            return true;
+        }
+    }
+    return false;
+}
+
 static enum status attributes_validate(const char *name, const char *attributes, struct error *error)
 {
     if (strlen(attributes) > LINE_LIMIT / 2) {
         return fail(error, STATUS_INPUT, "%s: attributes longer than %d bytes", name, LINE_LIMIT / 2);
     }
-    for (const char *c = attributes; *c != '\0'; c++) {
-        if ((unsigned char)*c < 0x20 || *c == 0x7f) {
-            return fail(error, STATUS_INPUT, "%s: control character in the header", name);
-        }
+    if (has_control(attributes)) {
+        return fail(error, STATUS_INPUT, "%s: control character in the header", name);
     }
     size_t length;
     int64_t count = 0;
@@ -285,16 +293,6 @@ bool section_attribute(const struct section *section, const char *key, char *val
 }
 
 /* ---- provenance: the command line of each tool that worked on the stream, as typed into a shell ---- */
-
-static bool has_control(const char *text)
-{
-    for (; *text != '\0'; text++) {
-        if ((unsigned char)*text < 0x20 || *text == 0x7f) {
-            return true;
-        }
-    }
-    return false;
-}
 
 /* Write an argument as a shell reads it, at most four bytes for each of its own and three more: as it is,
  * within quotation marks, or with line ends and other control characters as $'...' with escapes. Returns the

@@ -1,5 +1,6 @@
 /* The stream "mts 1" (see mts(5)): named, typed tables that travel through a pipe, as text or binary.
- * Rows count from 0, in messages too. */
+ * Rows count from 0, in messages too. As all readers and writers of lib/io, these need the locale "C" for
+ * numbers, which a program has as long as it sets no other. */
 #pragma once
 
 #include "base/names.h"
@@ -50,7 +51,7 @@ MUST_CHECK enum status stream_read(struct stream *stream, int descriptor, const 
                                    struct error *error);
 
 /* Read the sections before the place where a stream was stopped, truncated or damaged; *why receives the
- * fault there, or "". STATUS_INPUT if no section is complete. */
+ * fault, if there is one. STATUS_INPUT if no section is complete. */
 MUST_CHECK enum status stream_recover(struct stream *stream, int descriptor, const char *name,
                                       struct error *why, struct error *error);
 
@@ -86,7 +87,7 @@ MUST_CHECK enum status stream_writer_end(struct stream_writer *writer, const cha
 
 /* Write the rows of one section as bare text: a line per row, single blanks between the numbers. Errors of
  * the file stay in it. */
-MUST_CHECK enum status stream_write_rows(const struct section *section, FILE *file, struct error *error);
+void stream_write_rows(const struct section *section, FILE *file);
 
 /* The section of that name, or NULL. */
 const struct section *stream_find(const struct stream *stream, const char *name);

@@ -37,19 +37,10 @@ void section_give_back(const struct stream *stream, const struct section *sectio
 
 #define FIRST_LINE "# mts 1\n"
 
-/* stream_input.c: the bytes of the stream's input. */
+/* The bytes of the stream's input: the first byte, the next one, behind the last one. */
 struct input {
-    const char *start, *at, *end; /* the first byte, the next one, behind the last one */
+    const char *start, *at, *end;
 };
-
-/* Map a regular file that is at its beginning, or read what there is; of what does not begin as a stream only
- * the beginning. */
-MUST_CHECK enum status input_open(struct input *input, struct stream *stream, int descriptor,
-                                  struct error *error);
-
-/* The next line, without its newline, which must exist. */
-MUST_CHECK enum status input_line(struct input *input, const char **line, size_t *length,
-                                  struct error *error);
 
 /* Whether a line of `length` bytes, not zero-terminated, starts with a prefix. */
 static inline bool starts_with(const char *line, size_t length, const char *prefix)
@@ -66,7 +57,7 @@ MUST_CHECK enum status payload_read_text(struct input *input, struct section *se
 enum status fail_short(const struct section *section, int64_t row, struct error *error);
 
 /* stream_text.c: parse one number that ends at a blank, a line end or `end`. Returns the byte behind it, or
- * NULL if it is not a number of that type, or out of range. These functions need the C locale. */
+ * NULL if it is not a number of that type, or out of range. */
 const char *number_parse_integer(const char *at, const char *end, int64_t least, int64_t most,
                                  int64_t *value);
 const char *number_parse_double(const char *at, const char *end, double *value);

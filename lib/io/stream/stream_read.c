@@ -1,24 +1,62 @@
 /* Reading a stream: one pass, every line and payload checked, no allocation from the counts of a header
  * alone. */
+#include "io/files/textfile.h"
 #include "io/stream/stream_private.h"
 
 #include "base/memory.h"
 
-#include <locale.h>
+#include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
 #include <zlib.h>
 
-/* ---- the header line of a section: "# NAME TYPE ROWS COLS [key=value ...]" ---- */
+/* ---- the bytes: a regular file is mapped, everything else is read ---- */
 
-static char *next_word(char **at)
+/* Map a regular file that is at its beginning. The mapping is private and writable: changes of a payload
+ * never reach the file. */
+static bool map_file(int descriptor, struct stream *stream)
 {
-    char *word = *at + strspn(*at, " \t");
-    char *end = word + strcspn(word, " \t");
-    *at = *end != '\0' ? end + 1 : end;
-    *end = '\0';
-    return word;
+    struct stat file;
+    if (fstat(descriptor, &file) != 0 || !S_ISREG(file.st_mode) || file.st_size <= 0 ||
+        lseek(descriptor, 0, SEEK_CUR) != 0) {
+        return false;
+    }
+    size_t size = (size_t)file.st_size;
+    void *mapping = mmap(NULL, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_NORESERVE, descriptor, 0);
+    if (mapping == MAP_FAILED) {
+        return false;
+    }
+    stream->mapping = mapping;
+    stream->mapping_size = size;
+    stream->is_file = true;
+    return true;
 }
+
+static bool is_stream(const char *bytes, size_t size)
+{
+    return starts_with(bytes, size, FIRST_LINE);
+}
+
+/* Map a regular file that is at its beginning, or read what there is; of what does not begin as a stream only
+ * the beginning. */
+static enum status input_open(struct input *input, struct stream *stream, int descriptor, struct error *error)
+{
+    char *bytes = NULL;
+    enum status status = STATUS_OK;
+    if (!map_file(descriptor, stream)) {
+        (void)fcntl(descriptor, F_SETPIPE_SZ, BLOCK_SIZE); /* fewer context switches for a pipe, if granted */
+        status = descriptor_read_all(descriptor, SIZE_MAX, is_stream, &bytes, &stream->mapping_size, error);
+        stream->mapping = bytes;
+    }
+    input->at = input->start = stream->mapping;
+    input->end = input->start + stream->mapping_size;
+    return status;
+}
+
+/* ---- the header line of a section: "# NAME TYPE ROWS COLS [key=value ...]" ---- */
 
 static enum status header_type(const char *word, struct section *section, struct error *error)
 {
@@ -46,7 +84,7 @@ static enum status header_attributes(char *at, struct section *section, bool *bi
 {
     bool encoded = false;
     char *to = section->attributes;
-    for (char *word = next_word(&at); *word != '\0'; word = next_word(&at)) {
+    for (char *word = text_word(&at); *word != '\0'; word = text_word(&at)) {
         if (strncmp(word, "enc=", 4) != 0) {
             to = stpcpy(stpcpy(to, to > section->attributes ? " " : ""), word);
             continue;
@@ -72,21 +110,18 @@ static enum status header_parse(const char *line, size_t length, struct section 
     if (copy == NULL || section->attributes == NULL) {
         return fail_memory(error, "header");
     }
-    if (length > 0 && line[length - 1] == '\r') {
-        return fail(error, STATUS_INPUT, "lines end in CR LF: remove them with tr -d '\\r'");
-    }
     if (!starts_with(line, length, "# ")) {
         return fail(error, STATUS_INPUT,
                     "'%.40s' stands where a section header '# NAME TYPE ROWS COLS' should", copy);
     }
     char *at = copy + 2;
-    section->name = strdup(next_word(&at));
+    section->name = strdup(text_word(&at));
     if (section->name == NULL) {
         return fail_memory(error, "header");
     }
-    RETURN_IF_ERROR(header_type(next_word(&at), section, error));
-    RETURN_IF_ERROR(header_count(next_word(&at), "rows", section, &section->rows, error));
-    RETURN_IF_ERROR(header_count(next_word(&at), "columns", section, &section->cols, error));
+    RETURN_IF_ERROR(header_type(text_word(&at), section, error));
+    RETURN_IF_ERROR(header_count(text_word(&at), "rows", section, &section->rows, error));
+    RETURN_IF_ERROR(header_count(text_word(&at), "columns", section, &section->cols, error));
     RETURN_IF_ERROR(header_attributes(at, section, binary, error));
     return section_validate(section, error);
 }
@@ -100,14 +135,25 @@ struct reader {
     bool binary; /* some section is binary: the end line must carry the crc */
 };
 
-/* Read a line outside of payloads; it counts for the CRC of the end line. */
+/* Read a line outside of payloads, without its newline, which must exist; it counts for the CRC of the end
+ * line. */
 static enum status frame_line(struct reader *reader, const char **line, size_t *length, struct error *error)
 {
-    enum status status = input_line(&reader->input, line, length, error);
-    if (status == STATUS_OK && memchr(*line, '\0', *length) != NULL) {
-        return fail(error, STATUS_INPUT, "zero byte in a header line: damaged");
+    struct input *input = &reader->input;
+    size_t held = (size_t)(input->end - input->at), bound = held < LINE_LIMIT ? held : LINE_LIMIT;
+    const char *newline = memchr(input->at, '\n', bound);
+    if (newline == NULL) {
+        return bound == LINE_LIMIT
+                   ? fail(error, STATUS_INPUT, "a line longer than %d bytes: not an mts stream", LINE_LIMIT)
+                   : fail(error, STATUS_INPUT,
+                          "ends without its end line: cut short (did an earlier stage fail?)");
     }
-    return status;
+    *line = input->at;
+    *length = (size_t)(newline - input->at);
+    input->at = newline + 1;
+    return memchr(*line, '\0', *length) == NULL
+               ? STATUS_OK
+               : fail(error, STATUS_INPUT, "zero byte in a header line: damaged");
 }
 
 static void frame_count(struct reader *reader, const char *line, size_t length)
@@ -273,9 +319,7 @@ static enum status provenance_check(const char *line, size_t length, struct erro
 {
     for (size_t i = 0; i < length; i++) {
         if (((unsigned char)line[i] < 0x20 && line[i] != '\t') || line[i] == 0x7f) {
-            return line[i] == '\r' && i == length - 1
-                       ? fail(error, STATUS_INPUT, "lines end in CR LF: remove them with tr -d '\\r'")
-                       : fail(error, STATUS_INPUT, "control character in a provenance line: damaged");
+            return fail(error, STATUS_INPUT, "control character in a provenance line: damaged");
         }
     }
     return STATUS_OK;
@@ -283,8 +327,8 @@ static enum status provenance_check(const char *line, size_t length, struct erro
 
 static enum status read_lines(struct reader *reader, struct error *error)
 {
-    const char *line;
-    size_t length;
+    const char *line = NULL;
+    size_t length = 0;
     RETURN_IF_ERROR(read_first_line(reader, error));
     for (;;) {
         RETURN_IF_ERROR(frame_line(reader, &line, &length, error));
@@ -309,32 +353,19 @@ static enum status read_lines(struct reader *reader, struct error *error)
     return STATUS_OK;
 }
 
-static enum status read_all(struct reader *reader, int descriptor, struct error *error)
-{
-    RETURN_IF_ERROR(input_open(&reader->input, reader->stream, descriptor, error));
-    return read_lines(reader, error);
-}
-
-/* Read a stream. Unless `why` is NULL, a fault behind some complete sections is stored there and is not an
- * error. */
-static enum status read_stream(struct stream *stream, int descriptor, const char *name, struct error *why,
-                               struct error *error)
+enum status stream_recover(struct stream *stream, int descriptor, const char *name, struct error *why,
+                           struct error *error)
 {
     struct reader reader = {.stream = stream, .crc = 0};
     stream_init(stream);
-    /* Numbers are read in the C locale, whatever the program that calls us has set. */
-    locale_t c_locale = newlocale(LC_ALL_MASK, "C", (locale_t)0);
-    if (c_locale == (locale_t)0) {
-        return fail_memory(error, name);
+    enum status status = input_open(&reader.input, stream, descriptor, error);
+    if (status == STATUS_OK) {
+        status = read_lines(&reader, error);
     }
-    locale_t previous = uselocale(c_locale);
-    enum status status = read_all(&reader, descriptor, error);
     if (status == STATUS_INPUT && why != NULL && stream->section_count > 0) {
         *why = *error;
         status = STATUS_OK;
     }
-    uselocale(previous);
-    freelocale(c_locale);
     if (!reader.binary && !stream->is_file) { /* all is copied */
         stream_free_input(stream);
     }
@@ -346,12 +377,5 @@ static enum status read_stream(struct stream *stream, int descriptor, const char
 
 enum status stream_read(struct stream *stream, int descriptor, const char *name, struct error *error)
 {
-    return read_stream(stream, descriptor, name, NULL, error);
-}
-
-enum status stream_recover(struct stream *stream, int descriptor, const char *name, struct error *why,
-                           struct error *error)
-{
-    why->text[0] = '\0';
-    return read_stream(stream, descriptor, name, why, error);
+    return stream_recover(stream, descriptor, name, NULL, error);
 }

@@ -132,7 +132,6 @@ static enum status fail_word(const struct input *input, const struct section *se
     while (length < 40 && word + length < input->end && strchr(" \t\n", word[length]) == NULL) {
         length++;
     }
-    const char *text = element_type_name(section->type);
     if (length == 0) {
         if (word == input->end) {
             return fail_short(section, row, error);
@@ -148,12 +147,8 @@ static enum status fail_word(const struct input *input, const struct section *se
         return fail(error, STATUS_INPUT, "%s: row %jd: '%.*s': write a decimal point, not a comma",
                     section->name, row, length, word);
     }
-    if (memchr(word, '\r', (size_t)length) != NULL) {
-        return fail(error, STATUS_INPUT, "%s: row %jd: lines end in CR LF: remove them with tr -d '\\r'",
-                    section->name, row);
-    }
     return fail(error, STATUS_INPUT, "%s: row %jd: '%.*s' is not a number of type %s", section->name, row,
-                length, word, text);
+                length, word, element_type_name(section->type));
 }
 
 static void skip_blanks(struct input *input)
@@ -174,10 +169,6 @@ static enum status row_end(struct input *input, const struct section *section, i
     if (*input->at == '\n') {
         input->at++;
         return STATUS_OK;
-    }
-    if (*input->at == '\r') {
-        return fail(error, STATUS_INPUT, "%s: row %jd: lines end in CR LF: remove them with tr -d '\\r'",
-                    section->name, row);
     }
     return fail(error, STATUS_INPUT, "%s: row %jd: more than %jd numbers", section->name, row, section->cols);
 }
@@ -211,7 +202,7 @@ enum status payload_read_text(struct input *input, struct section *section, stru
     }
     for (int64_t blank = 0; blank < 2; blank++) {
         skip_blanks(input);
-        if (input->at < input->end && *input->at != '\n' && *input->at != '\r') {
+        if (input->at < input->end && *input->at != '\n') {
             return fail(error, STATUS_INPUT, "%s: more than %jd rows, or not two blank lines behind them",
                         section->name, section->rows);
         }

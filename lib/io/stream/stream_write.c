@@ -5,7 +5,6 @@
 
 #include <errno.h>
 #include <inttypes.h>
-#include <locale.h>
 #include <string.h>
 #include <zlib.h>
 
@@ -53,7 +52,7 @@ static enum status put_header(struct stream_writer *writer, const struct section
     return STATUS_OK;
 }
 
-static void format_rows(FILE *file, const struct section *section, int64_t *offset)
+static void put_rows(FILE *file, const struct section *section, int64_t *offset)
 {
     char block[1 << 16];
     size_t held = 0;
@@ -68,20 +67,6 @@ static void format_rows(FILE *file, const struct section *section, int64_t *offs
             held = 0;
         }
     }
-}
-
-/* Numbers are written in the C locale, whatever the calling program has set. */
-static enum status put_rows(FILE *file, const struct section *section, int64_t *offset, struct error *error)
-{
-    locale_t c_locale = newlocale(LC_ALL_MASK, "C", (locale_t)0);
-    if (c_locale == (locale_t)0) {
-        return fail_memory(error, "output");
-    }
-    locale_t previous = uselocale(c_locale);
-    format_rows(file, section, offset);
-    uselocale(previous);
-    freelocale(c_locale);
-    return STATUS_OK;
 }
 
 static void put_binary(struct stream_writer *writer, const struct section *section, uLong header_crc)
@@ -121,7 +106,7 @@ enum status stream_writer_put(struct stream_writer *writer, const struct stream 
     uLong crc;
     RETURN_IF_ERROR(put_header(writer, section, &crc, error));
     if (writer->text) {
-        RETURN_IF_ERROR(put_rows(writer->file, section, &writer->offset, error));
+        put_rows(writer->file, section, &writer->offset);
         put_bytes(writer, "\n\n", 2);
     } else {
         put_binary(writer, section, crc);
@@ -155,7 +140,7 @@ enum status stream_write(const struct stream *stream, FILE *file, bool text, str
     return stream_writer_end(&writer, NULL, error);
 }
 
-enum status stream_write_rows(const struct section *section, FILE *file, struct error *error)
+void stream_write_rows(const struct section *section, FILE *file)
 {
-    return put_rows(file, section, &(int64_t){0}, error);
+    put_rows(file, section, &(int64_t){0});
 }

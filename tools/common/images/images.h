@@ -4,6 +4,7 @@
 #include "tool.h"
 
 #include "approx/cells/cells.h"
+#include "io/files/table.h"
 #include "io/image/image.h"
 
 /* Read an image from a file ("-": standard input), and report assumptions; exits on failure. */
@@ -18,9 +19,6 @@ void tool_check_image_output(const struct tool *tool);
 
 /* Write an image to tool->output, in the format of its name, else that of the image; exits on failure. */
 void tool_write_image(const struct tool *tool, const struct image *image);
-
-/* "181 x 217 x 181 voxels of 1 x 1 x 1 mm" into text[128]; returns it. */
-const char *image_text(const struct image *image, char text[128]);
 
 /* The world axis to which the slices along a voxel axis are perpendicular; -1: none. */
 int image_axis_across(const struct image *image, int voxel);
@@ -57,3 +55,29 @@ double voxel_volume(const struct image *image, int dim);
 
 /* The shortest of the first dim steps between voxels, m. */
 double least_step(const struct image *image, int dim);
+
+/* Young's modulus and Poisson's ratio from the values of images: from an intensity by a table, or from the
+ * probabilities of tissues. */
+struct tissue {
+    struct table law;    /* rows value, E, nu, the values ascending; no rows: probabilities */
+    int count;           /* of tissues */
+    double (*moduli)[2]; /* count: E, Pa, and nu of each */
+};
+
+/* Check that E is positive, and nu within (-1, .5). */
+MUST_CHECK enum status moduli_check(const double moduli[2], struct error *error);
+
+/* Read a table of rows value, E (Pa), nu. Errors as table_read; STATUS_INPUT for values that do not ascend,
+ * and for invalid moduli. */
+MUST_CHECK enum status tissue_read(const char *path, struct tissue *tissue, struct error *error);
+
+/* From the values "E,NU" of an option, one for each tissue. */
+MUST_CHECK enum status tissue_parse(int count, const char *const text[], struct tissue *tissue,
+                                    struct error *error);
+
+/* moduli[2]: E and nu. With a table: linear between the values of its rows, constant beyond them (*beyond is
+ * then incremented). With probabilities value[count]: the means weighted by these, negative ones as 0; false
+ * if there is no tissue. */
+bool tissue_moduli(const struct tissue *tissue, const double *value, double moduli[2], int64_t *beyond);
+
+void tissue_free(struct tissue *tissue);

@@ -1,21 +1,103 @@
-#include "io/files/json.h"
+/* Markups of 3D Slicer: what JSON (RFC 8259) says of points. */
+#include "io/files/landmarks.h"
 
 #include <ctype.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { DEEPEST = 64 };
+/* A file that is being read, and the last of its points. */
+struct markups {
+    struct table *table;
+    double sign; /* of x and y, to RAS */
+    char *empty; /* label */
 
-void json_fail(struct json *json, const char *what)
+    enum status status; /* of JSON: after the first failure nothing more is taken */
+    struct error *error;
+    char *at;       /* ends with a NUL; strings are decoded in place */
+    int64_t line;   /* of `at`, from 1 */
+    char path[256]; /* of the value: "markups[].position[]", the keys of the objects that hold it and [] for
+                       each array; cut when longer */
+    int64_t first;  /* row of the markup */
+    bool has_units; /* said: of a code of UCUM, the unit comes first */
+    char *label;
+    double x[3];
+    int count; /* of its coordinates */
+    bool is_undefined;
+    int64_t point_line; /* of its position */
+};
+
+static void json_fail(struct markups *json, const char *what)
 {
     if (json->status == STATUS_OK) {
         json->status = fail(json->error, STATUS_INPUT, "%jd: %s", json->line, what);
     }
 }
 
+static bool is_text(const char *text, const char *wanted)
+{
+    return text != NULL && strcmp(text, wanted) == 0;
+}
+
+/* Take a value: a text, a number, or (both NULL) a word. */
+static void take_value(struct markups *json, char *text, const double *number)
+{
+    if (is_text(json->path, "markups[].coordinateSystem")) {
+        json->sign = is_text(text, "RAS") ? 1 : -1;
+        if (json->sign < 0 && !is_text(text, "LPS")) {
+            json_fail(json, "coordinateSystem is neither LPS nor RAS");
+        }
+    } else if (strncmp(json->path, "markups[].coordinateUnits", 25) == 0) { /* a text, or a list */
+        if (!json->has_units && !is_text(text, "mm")) {
+            json_fail(json, "coordinateUnits is not mm");
+        }
+        json->has_units = true;
+    } else if (is_text(json->path, "markups[].controlPoints[].label")) {
+        json->label = text;
+        if (text == NULL) {
+            json_fail(json, "a string is expected");
+        }
+    } else if (is_text(json->path, "markups[].controlPoints[].positionStatus")) {
+        json->is_undefined = !is_text(text, "defined");
+    } else if (strncmp(json->path, "markups[].controlPoints[].position[]", 36) == 0) {
+        json->point_line = json->line;
+        if (number == NULL || json->path[36] != '\0') {
+            json_fail(json, "a finite number is expected");
+        } else {
+            json->x[json->count < 3 ? json->count : 2] = *number;
+            json->count++;
+        }
+    }
+}
+
+/* An object ends: a point or a markup. */
+static void end_object(struct markups *json)
+{
+    struct table *table = json->table;
+    if (is_text(json->path, "markups[]")) {
+        for (; json->first < table->rows; json->first++) {
+            table->values[3 * json->first] *= json->sign;
+            table->values[3 * json->first + 1] *= json->sign;
+        }
+        json->sign = -1; /* LPS if nothing is said */
+        json->has_units = false;
+    } else if (is_text(json->path, "markups[].controlPoints[]")) {
+        if (json->count != 3 || json->is_undefined) {
+            json_fail(json, "a control point without a position of three numbers: place it, or leave it out");
+        } else {
+            json->status = table_append(table, json->x, json->point_line,
+                                        json->label != NULL ? json->label : json->empty, json->error);
+        }
+        json->label = NULL;
+        json->count = 0;
+        json->is_undefined = false;
+    }
+}
+
+enum { DEEPEST = 64 };
+
 /* The next character that is no blank; NUL at the end and after a failure. */
-static char peek(struct json *json)
+static char peek(struct markups *json)
 {
     for (; json->status == STATUS_OK && *json->at != '\0' && strchr(" \t\r\n", *json->at) != NULL;
          json->at++) {
@@ -27,7 +109,7 @@ static char peek(struct json *json)
     return *json->at;
 }
 
-static bool take(struct json *json, char c)
+static bool take(struct markups *json, char c)
 {
     bool found = peek(json) == c && c != '\0';
     json->at += found;
@@ -50,7 +132,7 @@ static void put_utf8(unsigned code, char **to)
 }
 
 /* Take four digits behind "u"; -1: they are not there. */
-static int take_unit(struct json *json)
+static int take_unit(struct markups *json)
 {
     char digits[5] = "";
     if (*json->at != 'u' || strspn(json->at + 1, "0123456789abcdefABCDEF") < 4) {
@@ -62,7 +144,7 @@ static int take_unit(struct json *json)
 }
 
 /* Take an escaped character, whose backslash has been taken; false: there is none. */
-static bool take_escape(struct json *json, char **to)
+static bool take_escape(struct markups *json, char **to)
 {
     static const char letters[] = "\"\\/bfnrt", meant[] = "\"\\/\b\f\n\r\t";
     char c = *json->at;
@@ -86,7 +168,7 @@ static bool take_escape(struct json *json, char **to)
     return code >= 0;
 }
 
-static char *take_string(struct json *json)
+static char *take_string(struct markups *json)
 {
     if (!take(json, '"')) {
         json_fail(json, "a string is expected");
@@ -106,7 +188,7 @@ static char *take_string(struct json *json)
     return text;
 }
 
-static double take_number(struct json *json)
+static double take_number(struct markups *json)
 {
     char word[64] = "", *end;
     size_t length = strspn(json->at, "0123456789+-.eE");
@@ -119,7 +201,7 @@ static double take_number(struct json *json)
     return value;
 }
 
-static void take_word(struct json *json)
+static void take_word(struct markups *json)
 {
     static const char *const words[] = {"true", "false", "null"};
     for (int i = 0; i < 3; i++) {
@@ -132,26 +214,18 @@ static void take_word(struct json *json)
     json_fail(json, "a word that is neither true, false nor null");
 }
 
-static void give(struct json *json, enum json_kind kind, char *text, double number)
-{
-    if (json->status == STATUS_OK) {
-        json->take(json, kind, text, number);
-    }
-}
-
-static void read_value(struct json *json, int depth)
+static void read_value(struct markups *json, int depth)
 {
     char c = peek(json);
     size_t length = strlen(json->path);
     if (c == '"') {
-        char *text = take_string(json);
-        give(json, JSON_STRING, text, 0);
+        take_value(json, take_string(json), NULL);
     } else if (isalpha((unsigned char)c)) {
         take_word(json);
-        give(json, JSON_WORD, NULL, 0);
+        take_value(json, NULL, NULL);
     } else if (c != '{' && c != '[') {
         double number = take_number(json);
-        give(json, JSON_NUMBER, NULL, number);
+        take_value(json, NULL, &number);
     } else if (depth == DEEPEST) {
         json_fail(json, "values within more than 64 others");
     } else {
@@ -170,17 +244,18 @@ static void read_value(struct json *json, int depth)
                                                   : "',' or a closing bracket is expected");
             }
         }
-        if (c == '{') {
-            give(json, JSON_END, NULL, 0);
+        if (c == '{' && json->status == STATUS_OK) {
+            end_object(json);
         }
     }
 }
 
-void json_read(struct json *json)
+enum status markups_read(char *text, char *empty, struct table *table, struct error *error)
 {
-    json->path[0] = '\0';
-    read_value(json, 0);
-    if (peek(json) != '\0') {
-        json_fail(json, "more behind the value");
+    struct markups json = {.table = table, .sign = -1, .empty = empty, .error = error, .at = text, .line = 1};
+    read_value(&json, 0);
+    if (peek(&json) != '\0') {
+        json_fail(&json, "more behind the value");
     }
+    return json.status;
 }

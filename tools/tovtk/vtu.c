@@ -1,5 +1,5 @@
 /* VTK XML files: the format is described in "VTK File Formats" (Kitware), section XML. */
-#include "io/vtk/vtk.h"
+#include "tovtk/plot.h"
 
 #include <inttypes.h>
 #include <string.h>
@@ -165,13 +165,13 @@ struct layout {
     int64_t tensor[6]; /* columns of a symmetric tensor in VTK's order */
 };
 
-static struct layout layout_of(const struct vtk_mesh *mesh, const struct section *section)
+static struct layout layout_of(int dim, const struct section *section)
 {
     struct layout layout = {.count = section->cols};
     layout.is_tensor = vtk_tensor(section, layout.tensor);
     if (layout.is_tensor) {
         layout.count = 6;
-    } else if (is_floating(section) && mesh->dim == 2 && section->cols == 2) {
+    } else if (is_floating(section) && dim == 2 && section->cols == 2) {
         layout.count = 3;
     }
     return layout;
@@ -206,11 +206,11 @@ static void put_rows(struct writer *writer, const struct section *section, const
     end_array(writer);
 }
 
-static void put_field(struct writer *writer, const struct vtk_mesh *mesh, const struct vtk_field *field)
+static void put_field(struct writer *writer, int dim, const struct plot_field *field)
 {
     static const char *const types[] = {"Int32", "Int64", "Float32", "Float64"};
     static const char *const added[] = {"", "", "z", "", "yz", "xz"}; /* names of columns of zeros */
-    struct layout layout = layout_of(mesh, field->section);
+    struct layout layout = layout_of(dim, field->section);
     char name[64];
     begin_array(writer, types[field->section->type], field->name, "NumberOfComponents", layout.count);
     bool is_named = layout.count > 1 && column_name(field->section, 0, name);
@@ -240,54 +240,49 @@ static void put_regions(struct writer *writer, const struct names *regions)
     fputs(regions->count == 0 ? "" : "</FieldData>\n", writer->file);
 }
 
-static void put_cells(struct writer *writer, const struct vtk_mesh *mesh)
+static void put_cells(struct writer *writer, const struct cells *cells, int64_t count)
 {
-    int corners = mesh->node != NULL ? mesh->dim + 1 : 1;
-    int64_t count = mesh->node != NULL ? mesh->cell_count : mesh->node_count;
-    int type = mesh->node == NULL ? VTK_VERTEX : mesh->dim == 2 ? VTK_TRIANGLE : VTK_TETRA;
+    int corners = cells->count > 0 ? cells->dim + 1 : 1;
+    int type = cells->count == 0 ? VTK_VERTEX : cells->dim == 2 ? VTK_TRIANGLE : VTK_TETRA;
     static const char one[] = "NumberOfComponents";
     fputs("<Cells>\n", writer->file);
-    put_numbers(writer, "Int64", "connectivity", one, count * corners, mesh->node, 0, 1);
+    put_numbers(writer, "Int64", "connectivity", one, count * corners, cells->count > 0 ? cells->node : NULL,
+                0, 1);
     put_numbers(writer, "Int64", "offsets", one, count, NULL, corners, corners);
     put_numbers(writer, "UInt8", "types", one, count, NULL, type, 0);
     fputs("</Cells>\n", writer->file);
 }
 
-static void put_fields(struct writer *writer, const struct vtk_mesh *mesh, const struct vtk_field *fields,
-                       int64_t field_count, bool of_cells)
+static void put_fields(struct writer *writer, const struct plot *plot, bool of_cells)
 {
     const char *tag = of_cells ? "CellData" : "PointData";
     fprintf(writer->file, "<%s>\n", tag);
-    for (int64_t f = 0; f < field_count; f++) {
-        if (fields[f].of_cells == of_cells) {
-            put_field(writer, mesh, &fields[f]);
+    for (int64_t f = 0; f < plot->field_count; f++) {
+        if (plot->fields[f].of_cells == of_cells) {
+            put_field(writer, plot->cells.dim, &plot->fields[f]);
         }
     }
     fprintf(writer->file, "</%s>\n", tag);
 }
 
-void vtu_write(FILE *file, const struct vtk_mesh *mesh, int64_t field_count, const struct vtk_field *fields,
-               bool text)
+void vtu_write(FILE *file, const struct plot *plot, bool text)
 {
     struct writer writer = {.file = file, .text = text};
-    const struct section points = {.type = TYPE_F8,
-                                   .rows = mesh->node_count,
-                                   .cols = mesh->dim,
-                                   .data = (void *)(uintptr_t)mesh->x}; /* which is not modified */
-    int64_t cell_count = mesh->node != NULL ? mesh->cell_count : mesh->node_count;
+    const struct cells *cells = &plot->cells;
+    int64_t count = cells->count > 0 ? cells->count : cells->node_count;
     fputs("<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" "
           "byte_order=\"LittleEndian\" "
           "header_type=\"UInt64\">\n<UnstructuredGrid>\n",
           file);
-    put_regions(&writer, &mesh->regions);
+    put_regions(&writer, &plot->regions.names);
     fprintf(file, "<Piece NumberOfPoints=\"%" PRId64 "\" NumberOfCells=\"%" PRId64 "\">\n<Points>\n",
-            mesh->node_count, cell_count);
+            cells->node_count, count);
     begin_array(&writer, "Float64", "Points", "NumberOfComponents", 3);
-    put_rows(&writer, &points, &(struct layout){.count = 3});
+    put_rows(&writer, stream_find(&plot->stream, "nodes.x"), &(struct layout){.count = 3});
     fputs("</Points>\n", file);
-    put_cells(&writer, mesh);
-    put_fields(&writer, mesh, fields, field_count, false);
-    put_fields(&writer, mesh, fields, field_count, true);
+    put_cells(&writer, cells, count);
+    put_fields(&writer, plot, false);
+    put_fields(&writer, plot, true);
     fputs("</Piece>\n</UnstructuredGrid>\n</VTKFile>\n", file);
 }
 
