@@ -1,8 +1,7 @@
 #include "approx/adaptive/adaptive.h"
 
 #include "approx/cells/quadrature.h"
-#include "approx/shape/shape.h"
-#include "approx/support/support.h"
+#include "approx/field/field.h"
 #include "base/lists.h"
 #include "base/memory.h"
 #include "base/vector.h"
@@ -77,52 +76,30 @@ static void place_child(int dim, const double *vertex, int child, double *of_chi
     }
 }
 
-/* Points of a subcell's own rule and of its children's, with their signs in the difference. */
-struct sample {
-    int64_t per_leaf;
-    int32_t cell[BATCH_LEAVES];
-    double *x;
-    struct support_lists lists;
-    double *phi, *dphi;
-};
-
-static void sample_free(struct sample *sample)
-{
-    free(sample->x);
-    support_free(&sample->lists);
-    FREE_ALL(sample->phi, sample->dphi);
-}
-
+/* The shape functions at the points of each subcell's own rule, then of its children's. */
 static enum status sample_leaves(const struct refinement *refinement, struct leaf *const *leaf, int64_t count,
-                                 struct sample *sample, struct error *error)
+                                 struct field_table *sample, struct error *error)
 {
-    const struct cells *cells = &refinement->space.cells;
-    const struct mls *mls = &refinement->options->support.mls;
-    int dim = cells->dim, per_rule = refinement->rule.points;
-    sample->per_leaf = per_rule * (1 + children_of(dim));
-    int64_t points = count * sample->per_leaf;
-    RETURN_IF_ERROR(NEW_ARRAY(&sample->x, points * dim, error));
-    double *x = sample->x;
-    for (int64_t l = 0; l < count; l++) {
-        sample->cell[l] = leaf[l]->cell;
-        quadrature_positions(&refinement->rule, dim, leaf[l]->vertex, in_order, x);
-        x += per_rule * dim;
-        for (int child = 0; child < children_of(dim); child++) {
-            double vertex[12];
-            place_child(dim, leaf[l]->vertex, child, vertex);
-            quadrature_positions(&refinement->rule, dim, vertex, in_order, x);
-            x += per_rule * dim;
+    const struct support_options *support = &refinement->options->support;
+    const struct field_shapes shapes = {.support = *support, .shapes = support->mls};
+    int dim = refinement->space.cells.dim, rules = 1 + children_of(dim);
+    int64_t per_rule = refinement->rule.points, per_leaf = per_rule * rules;
+    int32_t cell[BATCH_LEAVES];
+    NEW_SCRATCH(double, x, count * per_leaf * dim, error);
+    for (int64_t i = 0; i < count * rules; i++) {
+        double vertex[12];
+        int child = (int)(i % rules) - 1;
+        const struct leaf *own = leaf[i / rules];
+        cell[i / rules] = own->cell;
+        if (child >= 0) {
+            place_child(dim, own->vertex, child, vertex);
         }
+        quadrature_positions(&refinement->rule, dim, child >= 0 ? vertex : own->vertex, in_order,
+                             x + i * per_rule * dim);
     }
-    struct visibility_places places = {.cell = sample->cell, .points_per_row = sample->per_leaf};
-    RETURN_IF_ERROR(support_build(&refinement->options->support, &refinement->space, &places, points,
-                                  sample->x, "adaptive points", &sample->lists, error));
-    int64_t pairs = sample->lists.ptr[points];
-    RETURN_IF_ERROR(NEW_ARRAY(&sample->phi, pairs, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&sample->dphi, pairs * dim, error));
-    struct neighbours lists = support_view(&sample->lists);
-    return shape_table(mls, cells->x, refinement->space.radius, &lists, sample->x, "adaptive points",
-                       sample->phi, sample->dphi, error);
+    struct visibility_places places = {.cell = cell, .points_per_row = per_leaf};
+    return field_table_at(&shapes, &refinement->space, &places, count * per_leaf, x, "adaptive points", true,
+                          sample, error);
 }
 
 /* matrix (n x n, lower half) += factor G G^T. Row i of G belongs to row place[i] of the matrix. */
@@ -167,12 +144,12 @@ static int64_t unite(const struct support_lists *lists, int64_t first, int64_t l
 }
 
 /* *norm = |K| by the rule on a subcell, *change = |K - K by the rule on its children|. */
-static enum status measure(const struct refinement *refinement, const struct sample *sample, int64_t leaf,
-                           double volume, double *norm, double *change, struct error *error)
+static enum status measure(const struct refinement *refinement, const struct field_table *sample,
+                           int64_t leaf, double volume, double *norm, double *change, struct error *error)
 {
     const struct support_lists *lists = &sample->lists;
     int dim = refinement->space.cells.dim, per_rule = refinement->rule.points;
-    int64_t first = leaf * sample->per_leaf, last = first + sample->per_leaf;
+    int64_t per_leaf = per_rule * (1 + children_of(dim)), first = leaf * per_leaf, last = first + per_leaf;
     int64_t pairs = lists->ptr[last] - lists->ptr[first];
     NEW_SCRATCH(int64_t, united, pairs, error);
     NEW_SCRATCH(int32_t, place, pairs, error);
@@ -200,7 +177,7 @@ static enum status measure_batch(struct refinement *refinement, struct leaf *con
                                  struct error *error)
 {
     struct first_failure failure = {STATUS_OK};
-    FREED_BY(sample_free) struct sample sample = {0};
+    FREED_BY(field_table_free) struct field_table sample = {0};
     RETURN_IF_ERROR(sample_leaves(refinement, leaf, count, &sample, error));
 #pragma omp parallel for schedule(dynamic, 4)
     for (int64_t l = 0; l < count; l++) {
