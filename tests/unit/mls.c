@@ -3,7 +3,6 @@
 #include "approx_fixture.h"
 
 #include "approx/mls/mls_kernel.h"
-#include "approx/mls/mls_orthogonal.h"
 
 TEST(weights)
 {

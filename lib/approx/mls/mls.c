@@ -1,7 +1,6 @@
 #include "approx/mls/mls.h"
 
 #include "approx/mls/mls_kernel.h"
-#include "approx/mls/mls_orthogonal.h"
 #include "base/memory.h"
 
 #include <stdlib.h>

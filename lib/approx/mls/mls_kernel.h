@@ -15,12 +15,13 @@ enum mls_row {
     ROW_SLOPE,
     ROW_PHI,
     ROW_GRADIENT,
-    ROW_ORTHOGONAL = ROW_GRADIENT + 3, /* mls_orthogonal: MLS_MAX_BASIS rows */
+    ROW_ORTHOGONAL = ROW_GRADIENT + 3, /* mls_orthogonal: a matrix in the place of MLS_MAX_BASIS rows */
     MLS_ROWS = ROW_ORTHOGONAL + MLS_MAX_BASIS
 };
 
 /* Where all pivots are larger, the condition of this small matrix is good; a support is refused where the
- * reciprocal condition (1-norm, of the matrix scaled to unit diagonal) is below the square of this. */
+ * reciprocal condition (of the matrix scaled to unit diagonal, from the 1-norm of R) is below the square of
+ * this. */
 #define MLS_SAFE_PIVOT 1e-5
 #define MLS_LEAST_CONDITION (MLS_SAFE_PIVOT * MLS_SAFE_PIVOT)
 
@@ -31,3 +32,8 @@ enum mls_row {
  * mls_orthogonal() is needed. scratch[MLS_ROWS * stride]. */
 bool mls_kernel(const struct mls *mls, const struct mls_support *support, double *scratch, int64_t stride,
                 double *phi, double *dphi);
+
+/* The same by orthogonal factorisation, equation (3) of lib/README.md. Any verdict other than MLS_GOOD: there
+ * are none. */
+enum mls_verdict mls_orthogonal(const struct mls *mls, const struct mls_support *support, double *scratch,
+                                int64_t stride, double *phi, double *dphi);

@@ -1,158 +1,113 @@
 /* Moving least squares by orthogonal (QR) factorisation of the weighted monomials, for points whose moment
  * matrix may be ill-conditioned. It loses half as many digits as the normal equations. */
-#include "approx/mls/mls_orthogonal.h"
+#include "approx/mls/mls_kernel.h"
 
 #include "approx/mls/mls_vector.h"
-#include "base/dense.h"
 
-/* sqrt(W) P D^-1 over sqrt(H) D^-1 = Q R, D = sqrt(diag M); Q is in ROW_ORTHOGONAL. */
+#include <gsl/gsl_blas.h>
+#include <gsl/gsl_linalg.h>
+
+/* sqrt(W) P D^-1 over sqrt(H) D^-1 = Q R, D = sqrt(diag M), as GSL has it: R in the upper triangle. */
 struct mls_factor {
-    double scaling[MLS_MAX_BASIS];               /* 1 / D */
-    double lower[MLS_MAX_BASIS * MLS_MAX_BASIS]; /* R^T */
+    gsl_matrix_view QR;            /* in ROW_ORTHOGONAL */
+    double tau[MLS_MAX_BASIS];     /* of Q */
+    double scaling[MLS_MAX_BASIS]; /* 1 / D */
 };
-
-/* Solve with the leading `size` rows and columns of the m x m factor. */
-static void solve(int m, int size, const struct mls_factor *factor, const double *right, double *solution)
-{
-    const double *lower = factor->lower;
-    for (int k = 0; k < size; k++) {
-        double sum = right[k] * factor->scaling[k];
-        for (int i = 0; i < k; i++) {
-            sum -= lower[k * m + i] * solution[i];
-        }
-        solution[k] = sum / lower[k * m + k];
-    }
-    for (int k = size - 1; k >= 0; k--) {
-        double sum = solution[k];
-        for (int i = k + 1; i < size; i++) {
-            sum -= lower[i * m + k] * solution[i];
-        }
-        solution[k] = sum / lower[k * m + k];
-    }
-    for (int k = 0; k < size; k++) {
-        solution[k] *= factor->scaling[k];
-    }
-}
-
-/* 1 / (|A| |A^-1|) in the 1-norm, of the leading `size` block of the moment matrix, scaled; 0 where that is
- * not positive definite. */
-static double reciprocal_condition(int size, const struct mls_system *system, const double *scaling)
-{
-    double block[MLS_MAX_BASIS * MLS_MAX_BASIS], norm[2] = {0.0, 0.0};
-    for (int k = 0; k < size * size; k++) {
-        block[k] = system->matrix[k / size][k % size] * scaling[k / size] * scaling[k % size];
-    }
-    for (int inverse = 0; inverse < 2; inverse++) {
-        if (inverse == 1) {
-            if (!dense_factorise(size, block)) {
-                return 0.0;
-            }
-            dense_invert(size, block);
-        }
-        for (int k = 0; k < size; k++) {
-            double sum = 0.0;
-            for (int l = 0; l < size; l++) {
-                sum += fabs(block[k * size + l]);
-            }
-            norm[inverse] = fmax(norm[inverse], sum);
-        }
-    }
-    return 1.0 / (norm[0] * norm[1]);
-}
-
-/* Check the condition of the linear block of the moment matrix, and unless `modified` that of the whole
- * matrix (with MMLS H bounds it, and the reproduction is checked afterwards). Sets `scaling`. */
-static bool is_conditioned(int m, int dim, bool modified, const struct mls_system *system, double *scaling)
-{
-    for (int k = 0; k < m; k++) {
-        double diagonal = system->matrix[k][k];
-        if (!(diagonal > 1e-280) || !isfinite(diagonal)) {
-            return false;
-        }
-        scaling[k] = 1.0 / sqrt(diagonal);
-    }
-    return reciprocal_condition(dim + 1, system, scaling) >= MLS_LEAST_CONDITION &&
-           (modified || reciprocal_condition(m, system, scaling) >= MLS_LEAST_CONDITION);
-}
 
 static double *row_of(const struct mls_point *point, int row)
 {
     return point->row + row * point->stride;
 }
 
-/* Gram-Schmidt, each column orthogonalised twice, of the scaled rows sqrt(w_j) p_j and sqrt(h_k) e_k. */
-static void orthogonalise(int dim, int m, const struct mls_point *point, const struct mls_system *system,
+/* Factorise. False if M has a diagonal entry that is no positive number. */
+static bool orthogonalise(int dim, int m, const struct mls_point *point, const struct mls_system *system,
                           struct mls_factor *factor)
 {
-    int64_t rows = point->count + m;
+    double *row = row_of(point, ROW_ORTHOGONAL);
     const double *weight = row_of(point, ROW_WEIGHT);
-    for (int64_t j = 0; j < point->padded; j += LANES) {
+    gsl_vector_view tau = gsl_vector_view_array(factor->tau, (size_t)m);
+    for (int k = 0; k < m; k++) {
+        double diagonal = system->matrix[k][k];
+        if (!(diagonal > 1e-280) || !isfinite(diagonal)) {
+            return false;
+        }
+        factor->scaling[k] = 1.0 / sqrt(diagonal);
+    }
+    for (int64_t j = 0; j < point->count; j++) {
         lanes xi[3], p[MLS_MAX_BASIS];
-        load_monomials(dim, m, point, j, xi, p);
+        load_monomials(dim, m, point, j / LANES * LANES, xi, p);
         for (int k = 0; k < m; k++) {
-            store_row(point, ROW_ORTHOGONAL + k, j, &p[k]);
+            row[j * m + k] = sqrt(weight[j]) * p[k][j % LANES] * factor->scaling[k];
         }
     }
     for (int k = 0; k < m; k++) {
-        double *column = row_of(point, ROW_ORTHOGONAL + k);
-        for (int64_t j = 0; j < point->count; j++) {
-            column[j] *= sqrt(weight[j]) * factor->scaling[k];
-        }
         for (int l = 0; l < m; l++) {
-            column[point->count + l] = l == k ? sqrt(system->regularisation[k]) * factor->scaling[k] : 0.0;
+            row[(point->count + k) * m + l] =
+                l == k ? sqrt(system->regularisation[k]) * factor->scaling[k] : 0.0;
         }
-        double *r = factor->lower + k * m; /* column k of R, stored as row k of R^T */
-        memset(r, 0, (size_t)m * sizeof *r);
-        for (int pass = 0; pass < 2; pass++) {
-            for (int l = 0; l < k; l++) {
-                const double *other = row_of(point, ROW_ORTHOGONAL + l);
-                double dot = 0.0;
-                for (int64_t j = 0; j < rows; j++) {
-                    dot += other[j] * column[j];
-                }
-                r[l] += dot;
-                for (int64_t j = 0; j < rows; j++) {
-                    column[j] -= dot * other[j];
-                }
-            }
-        }
-        double norm2 = 0.0;
-        for (int64_t j = 0; j < rows; j++) {
-            norm2 += column[j] * column[j];
-        }
-        r[k] = sqrt(fmax(norm2, 1e-300));
-        for (int64_t j = 0; j < rows; j++) {
-            column[j] /= r[k];
-        }
+    }
+    factor->QR = gsl_matrix_view_array(row, (size_t)(point->count + m), (size_t)m);
+    gsl_linalg_QR_decomp(&factor->QR.matrix, &tau.vector);
+    return true;
+}
+
+/* Whether the leading `size` block of the scaled moment matrix R^T R is well conditioned. */
+static bool is_conditioned(int size, const struct mls_factor *factor)
+{
+    double reciprocal, scratch[3 * MLS_MAX_BASIS];
+    gsl_matrix_const_view R =
+        gsl_matrix_const_submatrix(&factor->QR.matrix, 0, 0, (size_t)size, (size_t)size);
+    gsl_vector_view work = gsl_vector_view_array(scratch, (size_t)(3 * size));
+    return gsl_linalg_tri_rcond(CblasUpper, &R.matrix, &reciprocal, &work.vector) == GSL_SUCCESS &&
+           reciprocal * reciprocal >= MLS_LEAST_CONDITION;
+}
+
+/* Solve with the leading `size` rows and columns of R^T, and unless `half` with those of R. */
+static void solve_triangles(const struct mls_factor *factor, int size, bool half, double *x)
+{
+    gsl_matrix_const_view R =
+        gsl_matrix_const_submatrix(&factor->QR.matrix, 0, 0, (size_t)size, (size_t)size);
+    gsl_vector_view v = gsl_vector_view_array(x, (size_t)size);
+    gsl_blas_dtrsv(CblasUpper, CblasTrans, CblasNonUnit, &R.matrix, &v.vector);
+    if (!half) {
+        gsl_blas_dtrsv(CblasUpper, CblasNoTrans, CblasNonUnit, &R.matrix, &v.vector);
     }
 }
 
-/* phi_j = w_j p_j . c, c = M^-1 e_1, from Q directly: products with a large c would cancel. Stores it in
- * ROW_PHI, and slope_j p_j . c in ROW_SLOPE. */
+/* Solve with the leading `size` rows and columns of the moment matrix. */
+static void solve(const struct mls_factor *factor, int size, const double *right, double *solution)
+{
+    for (int k = 0; k < size; k++) {
+        solution[k] = right[k] * factor->scaling[k];
+    }
+    solve_triangles(factor, size, false, solution);
+    for (int k = 0; k < size; k++) {
+        solution[k] *= factor->scaling[k];
+    }
+}
+
+/* phi_j = w_j p_j . c, c = M^-1 e_1, by Q: products with a large c would cancel. Stores it in ROW_PHI, and
+ * slope_j p_j . c in ROW_SLOPE. */
 static void orthogonal_values(int m, const struct mls_factor *factor, const struct mls_point *point)
 {
-    double y[MLS_MAX_BASIS];
-    for (int k = 0; k < m; k++) { /* R^T y = D^-1 e_1 */
-        double sum = k == 0 ? factor->scaling[0] : 0.0;
-        for (int i = 0; i < k; i++) {
-            sum -= factor->lower[k * m + i] * y[i];
-        }
-        y[k] = sum / factor->lower[k * m + k];
-    }
+    double *phi = row_of(point, ROW_PHI);
+    gsl_vector_const_view tau = gsl_vector_const_view_array(factor->tau, (size_t)m);
+    gsl_vector_view v = gsl_vector_view_array(phi, (size_t)(point->count + m));
+    gsl_vector_set_zero(&v.vector);
+    phi[0] = factor->scaling[0];
+    solve_triangles(factor, m, true, phi);
+    gsl_linalg_QR_Qvec(&factor->QR.matrix, &tau.vector, &v.vector);
     for (int64_t j = 0; j < point->count; j++) {
-        double sum = 0.0, root = sqrt(row_of(point, ROW_WEIGHT)[j]);
-        for (int k = 0; k < m; k++) {
-            sum += row_of(point, ROW_ORTHOGONAL + k)[j] * y[k];
-        }
-        row_of(point, ROW_PHI)[j] = root * sum;
-        row_of(point, ROW_SLOPE)[j] *= root > 1e-150 ? sum / root : 0.0;
+        double root = sqrt(row_of(point, ROW_WEIGHT)[j]);
+        row_of(point, ROW_SLOPE)[j] *= root > 1e-150 ? phi[j] / root : 0.0;
+        phi[j] *= root;
     }
 }
 
 /* Correct the values of a row by w_j p_j . c over the linear monomials, where H is zero, so that
  * sum_j value_j p_k(xi_j), k <= dim, is 1 for k = `one` and else 0, to round-off: linear fields are
  * reproduced also where the quadratic part is ill-conditioned. Returns the largest defect before. */
-static double restore(int m, int dim, const struct mls_factor *factor, const struct mls_point *point, int one,
+static double restore(int dim, const struct mls_factor *factor, const struct mls_point *point, int one,
                       double *value)
 {
     double defect[4], correction[4], worst = 0.0;
@@ -164,7 +119,7 @@ static double restore(int m, int dim, const struct mls_factor *factor, const str
         }
         worst = larger_defect(worst, defect[k]);
     }
-    solve(m, dim + 1, factor, defect, correction);
+    solve(factor, dim + 1, defect, correction);
     for (int64_t j = 0; j < point->count; j++) {
         double sum = correction[0];
         for (int a = 0; a < dim; a++) {
@@ -194,7 +149,7 @@ static void orthogonal_gradients(int dim, int m, const struct mls_factor *factor
         for (int k = 0; k < m; k++) {
             right[k] = lane_sum(&sum[k]) + (k == 1 + a ? 1.0 : 0.0);
         }
-        solve(m, m, factor, right, g);
+        solve(factor, m, right, g);
         for (int k = 0; k < m; k++) {
             coefficient[k][a] = g[k];
         }
@@ -223,20 +178,21 @@ enum mls_verdict mls_orthogonal(const struct mls *mls, const struct mls_support 
     default:
         begin(mls, support, 3, 10, scratch, stride, &point, &system);
     }
-    if (!is_conditioned(m, dim, mls->basis == BASIS_MODIFIED, &system, factor.scaling)) {
+    /* With MMLS H bounds the condition of the whole matrix, and the reproduction is checked below. */
+    if (!orthogonalise(dim, m, &point, &system, &factor) || !is_conditioned(dim + 1, &factor) ||
+        (mls->basis != BASIS_MODIFIED && !is_conditioned(m, &factor))) {
         return MLS_ILL_CONDITIONED;
     }
-    orthogonalise(dim, m, &point, &system, &factor);
     orthogonal_values(m, &factor, &point);
     if (dphi != NULL) {
         orthogonal_gradients(dim, m, &factor, &point);
     }
     /* Once to refine them, and once to know what is left. */
     for (int pass = 0; pass < 2; pass++) {
-        worst = restore(m, dim, &factor, &point, 0, row_of(&point, ROW_PHI));
+        worst = restore(dim, &factor, &point, 0, row_of(&point, ROW_PHI));
         for (int a = 0; a < rows; a++) {
-            worst = larger_defect(worst,
-                                  restore(m, dim, &factor, &point, 1 + a, row_of(&point, ROW_GRADIENT + a)));
+            worst =
+                larger_defect(worst, restore(dim, &factor, &point, 1 + a, row_of(&point, ROW_GRADIENT + a)));
         }
     }
     if (phi != NULL) {
