@@ -1,7 +1,7 @@
 static const char usage[] =
     "voxels - label image to node cloud, background cells, facets and node sets\n"
     "\n"
-    "usage: voxels -h LENGTH [--fine LENGTH[:NAME,...]] [--sizes FILE] [-l TABLE]\n"
+    "usage: voxels -h LENGTH [--fine LENGTH[:NAME,...]] [-l TABLE]\n"
     "              [-s AXIS=PLACE] [--largest] [-u UNIT] [-v] [-t] [-o FILE] [[LABEL=]IMAGE ...]\n"
     "       voxels -h LENGTH --surface NAME[|NAME] [--gap LENGTH] [--fine LENGTH[:NAME,...]] [-l TABLE]\n"
     "              [-s AXIS=PLACE] [--largest] [-u UNIT] [-v] [-o FILE] [[LABEL=]IMAGE ...]\n"
@@ -41,7 +41,6 @@ static const char usage[] =
     "  -h, --spacing LENGTH    of the lattice, with a unit: 6mm (required; a last -h is --help)\n"
     "      --fine LENGTH[:NAME,...]  spacing at all interfaces, with names at those of these labels only:\n"
     "                          that of -h is halved until it is no larger\n"
-    "      --sizes FILE        lengths of edges, by sizefield -b: the spacing is halved where they ask so\n"
     "      --surface NAME[|NAME]  write the surface of the first label; with a second name (or outside)\n"
     "                          only where that lies beyond it\n"
     "      --gap LENGTH        move it outward by LENGTH, less where it would cross itself\n"
@@ -72,7 +71,7 @@ static const char usage[] =
 #include <string.h>
 #include <unistd.h>
 
-/* Errors of volume above this share are reported, and a share of the body outside of the cells with sizes. */
+/* Errors of volume above this share are reported. */
 static const double reported_share = 0.01;
 
 static double shown(int dim, double volume)
@@ -184,10 +183,6 @@ static void report(const struct tool *tool, const struct label_image *image, con
                    double spacing, bool surface, bool verbose)
 {
     struct cells cells = label_cells_view(result);
-    if (result->unsized > reported_share) {
-        tool_note(tool, "%.3g %% of the body lie beyond the sizes: cells there are of the spacing of -h",
-                  100 * result->unsized);
-    }
     if (result->specks > 0) {
         tool_note(tool, "%jd bodies no larger than the spacing, %.3g %s in all, are left out", result->specks,
                   shown(cells.dim, result->speck_volume), cells.dim == 3 ? "ml" : "cm2");
@@ -221,13 +216,6 @@ static void write_stream(const struct tool *tool, const struct label_image *imag
     tool_write(tool, &stream);
 }
 
-/* Sizes at the nodes of cells, as views of a stream, which is to be freed. */
-struct label_sizes {
-    struct stream stream;
-    struct cells cells;
-    const double *size; /* cells.node_count, m, positive; NULL: no sizes */
-};
-
 /* The value of --fine, "3mm" or "3mm:ventricles,tumour", which must be less than `spacing`, m: *finest, m.
  * Returns an array of labels, to be freed; NULL: of all. Exits on failure. */
 static bool *label_fine_parse(const struct tool *tool, const struct label_image *image, const char *text,
@@ -253,31 +241,6 @@ static bool *label_fine_parse(const struct tool *tool, const struct label_image 
         fine[label] = true;
     }
     return fine;
-}
-
-/* Read the sections nodes.x, cells and size of the stream `file` (NULL: no sizes), in the dimension of the
- * image. Exits on failure. */
-static void label_sizes_read(const struct tool *tool, const struct label_image *image, const char *file,
-                             struct label_sizes *sizes)
-{
-    const struct section *section;
-    *sizes = (struct label_sizes){0};
-    if (file == NULL) {
-        return;
-    }
-    tool_read(tool, file, &sizes->stream);
-    TOOL_TRY(tool, stream_cells(&sizes->stream, true, &sizes->cells, &error));
-    TOOL_TRY(tool, stream_need(&sizes->stream, "size", TYPE_F8, 1, "sizefield -b", &section, &error));
-    if (sizes->cells.dim != image->labels.dim) {
-        tool_fail(tool, STATUS_INPUT, "--sizes: cells in %dD, the image is of a body in %dD",
-                  sizes->cells.dim, image->labels.dim);
-    }
-    if (section->rows != sizes->cells.node_count) {
-        tool_fail(tool, STATUS_INPUT, "--sizes: size: %jd rows for %jd nodes", section->rows,
-                  sizes->cells.node_count);
-    }
-    sizes->size = section->data;
-    TOOL_TRY(tool, fail_in(&error, section_check_numbers(section, POSITIVE, &error), "--sizes"));
 }
 
 /* Progress on a terminal: the step that begins; NULL: none. */
@@ -332,10 +295,6 @@ int main(int argc, char *argv[])
             label_fine_parse(&tool, &image, tool_value(&tool, "fine"), spacing, &label_cells_options.finest);
         label_cells_options.fine = fine;
     }
-    struct label_sizes sizes;
-    label_sizes_read(&tool, &image, tool_value(&tool, "sizes"), &sizes);
-    label_cells_options.sized = &sizes.cells;
-    label_cells_options.size = sizes.size;
     struct error error;
     enum status status = label_cells_make(&image.labels, &label_cells_options, &result, &error);
     show_step(&shown, NULL);
@@ -351,6 +310,5 @@ int main(int argc, char *argv[])
     } else {
         write_stream(&tool, &image, &result);
     }
-    stream_free(&sizes.stream);
     return tool_end(&tool);
 }
