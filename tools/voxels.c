@@ -69,7 +69,6 @@ static const char usage[] =
 #include <ctype.h>
 #include <math.h>
 #include <string.h>
-#include <unistd.h>
 
 /* Errors of volume above this share are reported. */
 static const double reported_share = 0.01;
@@ -161,10 +160,8 @@ static void report_cells(const struct tool *tool, const struct cells *cells, dou
 {
     double least = 180, most = 0;
     for (int64_t c = 0; c < cells->count; c++) {
-        const double *x[4];
         double angles[2];
-        cell_corners(cells, c, x);
-        simplex_angles(cells->dim, x, angles);
+        simplex_angles(cells, c, angles);
         least = fmin(least, angles[0]);
         most = fmax(most, angles[1]);
     }
@@ -243,14 +240,6 @@ static bool *label_fine_parse(const struct tool *tool, const struct label_image 
     return fine;
 }
 
-/* Progress on a terminal: the step that begins; NULL: none. */
-static void show_step(void *context, const char *step)
-{
-    if (*(const bool *)context) {
-        fprintf(stderr, "\r%78s\r%s%s", "", step != NULL ? "voxels: " : "", step != NULL ? step : "");
-    }
-}
-
 static void check_options(const struct tool *tool)
 {
     if (!tool_given(tool, "spacing")) {
@@ -283,12 +272,8 @@ int main(int argc, char *argv[])
             image.keep[l] = l == surface.inner;
         }
     }
-    bool shown = isatty(STDERR_FILENO);
-    struct label_cells_options label_cells_options = {.spacing = spacing,
-                                                      .keep = image.keep,
-                                                      .largest = tool_given(&tool, "largest"),
-                                                      .begin = show_step,
-                                                      .context = &shown};
+    struct label_cells_options label_cells_options = {
+        .spacing = spacing, .keep = image.keep, .largest = tool_given(&tool, "largest")};
     SCRATCH bool *fine = NULL;
     if (tool_given(&tool, "fine")) {
         fine =
@@ -297,7 +282,6 @@ int main(int argc, char *argv[])
     }
     struct error error;
     enum status status = label_cells_make(&image.labels, &label_cells_options, &result, &error);
-    show_step(&shown, NULL);
     const char *length = tool_value(&tool, "spacing");
     if (status == STATUS_INPUT && !isalpha((unsigned char)length[strlen(length) - 1])) {
         tool_fail(&tool, status, "%s -h %s is %s m: give a unit, as -h %smm", error.text, length, length,

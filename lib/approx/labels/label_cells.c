@@ -5,45 +5,22 @@
 #include "base/vector.h"
 
 #include <math.h>
-#include <stdlib.h>
 
-/* Cosines between inward normals of faces: the angle between two faces is 180 degrees less that of the
- * normals. */
-void simplex_angles(int dim, const double *const x[], double angles[2])
+void simplex_angles(const struct cells *cells, int64_t cell, double angles[2])
 {
-    double edge[3][3] = {{0}}, normal[4][3] = {{0}};
-    double least = 2, most = -2, size;
-    for (int k = 0; k < dim; k++) {
-        vector_subtract(dim, x[k + 1], x[0], edge[k]);
-    }
-    if (dim == 2) {
-        size = edge[0][0] * edge[1][1] - edge[0][1] * edge[1][0];
-        normal[1][0] = edge[1][1];
-        normal[1][1] = -edge[1][0];
-        normal[2][0] = -edge[0][1];
-        normal[2][1] = edge[0][0];
-    } else {
-        vector_cross(edge[1], edge[2], normal[1]);
-        vector_cross(edge[2], edge[0], normal[2]);
-        vector_cross(edge[0], edge[1], normal[3]);
-        size = vector_dot(3, edge[0], normal[1]);
-    }
+    int dim = cells->dim;
+    double normal[4][3], length[4], least = 2, most = -2;
     angles[0] = 0;
     angles[1] = 180;
-    if (!(size > 0)) {
+    if (!(cell_volume(cells, cell) > 0)) {
         return;
     }
-    for (int k = 1; k <= dim; k++) {
-        for (int d = 0; d < dim; d++) {
-            normal[0][d] -= normal[k][d];
-        }
-    }
-    double length[4];
     for (int k = 0; k <= dim; k++) {
-        length[k] = sqrt(vector_dot(dim, normal[k], normal[k]));
-    }
-    for (int k = 0; k <= dim; k++) {
-        for (int l = k + 1; l <= dim; l++) {
+        int32_t face[3];
+        cell_face(cells, cell, k, face);
+        face_area_vector(dim, cells->x, face, normal[k]);
+        length[k] = vector_length(dim, normal[k]);
+        for (int l = 0; l < k; l++) { /* the angle between faces is 180 degrees less that of their normals */
             double cosine = -vector_dot(dim, normal[k], normal[l]) / (length[k] * length[l]);
             least = fmin(least, cosine);
             most = fmax(most, cosine);
@@ -55,31 +32,31 @@ void simplex_angles(int dim, const double *const x[], double angles[2])
     }
 }
 
-void label_cells_begin(const struct label_cells_options *options, const char *step)
+static void body_free(struct label_body *body)
 {
-    if (options->begin != NULL) {
-        options->begin(options->context, step);
-    }
+    FREE_ALL(body->between, body->wanted, body->across, body->group, body->stack, body->from, body->apart,
+             body->volume, body->place, body->off);
+    star_free(&body->star);
 }
 
 static enum status make(const struct labels *labels, const struct label_cells_options *options,
                         struct label_cells *mesh, struct error *error)
 {
     FREED_BY(lattice_free) struct lattice lattice = {0};
-    FREED_BY(label_cells_kept_free) struct label_cells_kept kept = {0};
-    SCRATCH bool *between = NULL;
-    label_cells_begin(options, "cutting the lattice");
+    FREED_BY(body_free)
+    struct label_body body = {
+        .labels = labels, .options = options, .mesh = mesh, .voxel = labels_voxel(labels)};
     RETURN_IF_ERROR(lattice_make(labels, options, &lattice, error));
     RETURN_IF_ERROR(lattice_cut(&lattice, error));
-    RETURN_IF_ERROR(lattice_cells(&lattice, mesh, &between, error));
+    RETURN_IF_ERROR(lattice_cells(&lattice, mesh, &body.between, error));
     lattice_free(&lattice);
-    RETURN_IF_ERROR(label_cells_keep(labels, options, between, mesh, &kept, error));
+    RETURN_IF_ERROR(label_cells_keep(&body, error));
     if (mesh->facet_count == 0) {
         return fail(error, STATUS_INPUT, "spacing %g m: no lattice point lies in a label: smaller?",
                     options->spacing);
     }
-    RETURN_IF_ERROR(label_cells_improve(labels, options, &kept, mesh, error));
-    return label_cells_drop(kept.wanted, mesh, error);
+    RETURN_IF_ERROR(label_cells_improve(&body, error));
+    return label_cells_drop(body.wanted, mesh, error);
 }
 
 enum status label_cells_make(const struct labels *labels, const struct label_cells_options *options,

@@ -21,8 +21,6 @@ struct label_cells_options {
     const bool *fine; /* labels->count: those with fine interfaces; NULL: all */
     const bool *keep; /* labels->count: cells of this label are wanted; not label 0 */
     bool largest;     /* keep only the largest of several connected bodies: voxels of others become outside */
-    void (*begin)(void *context, const char *step); /* called at the beginning of each step; NULL: not */
-    void *context;
 };
 
 /* Bounds of the angles of cells, degrees, which label_cells_make meets if it can. */
@@ -70,6 +68,6 @@ static inline struct cells label_cells_view(const struct label_cells *mesh)
 MUST_CHECK enum status label_cells_lost(const struct labels *labels, const bool *keep,
                                         const struct label_cells *mesh, int64_t *lost, struct error *error);
 
-/* Least and largest dihedral angle (2D: angle) of a simplex with corners x[dim + 1], degrees; 0 and 180 for
- * one without volume or inverted. */
-void simplex_angles(int dim, const double *const x[], double angles[2]);
+/* Least and largest dihedral angle (2D: angle) of a cell, degrees; 0 and 180 for one without volume or
+ * inverted. */
+void simplex_angles(const struct cells *cells, int64_t cell, double angles[2]);

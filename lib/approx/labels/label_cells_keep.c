@@ -22,17 +22,18 @@ static void add_label(struct label_cells_star *star, int64_t node, int32_t label
     }
 }
 
-enum status star_make(const struct label_cells *mesh, const bool *wanted, struct label_cells_star *star,
-                      struct error *error)
+enum status star_make(struct label_body *body, struct error *error)
 {
+    const struct label_cells *mesh = body->mesh;
+    struct label_cells_star *star = &body->star;
     int corners = mesh->dim + 1;
-    *star = (struct label_cells_star){0};
+    star_free(star);
     RETURN_IF_ERROR(lists_by_row(mesh->cell_count, corners, mesh->cell, mesh->node_count, &star->ptr,
                                  &star->cell, error));
     RETURN_IF_ERROR(NEW_ARRAY(&star->label, mesh->node_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&star->labels, mesh->node_count, error));
     for (int64_t i = 0; i < mesh->cell_count * corners; i++) {
-        if (wanted == NULL || wanted[i / corners]) {
+        if (body->wanted == NULL || body->wanted[i / corners]) {
             add_label(star, mesh->cell[i], mesh->label[i / corners]);
         }
     }
@@ -51,20 +52,21 @@ void star_free(struct label_cells_star *star)
 /* ---- the boundary ---- */
 
 /* Count the boundary facets of the wanted cells; store them if the arrays exist. */
-static int64_t find_facets(const struct label_cells_keeping *keeping, int32_t *facet, int32_t *side)
+static int64_t find_facets(const struct label_body *body, int32_t *facet, int32_t *side)
 {
-    int dim = keeping->cells.dim;
+    int dim = body->mesh->dim;
     int64_t count = 0;
-    for (int64_t c = 0; c < keeping->cells.count; c++) {
-        for (int k = 0; k <= dim && keeping->wanted[c]; k++) {
-            int32_t next = keeping->across[c * (dim + 1) + k];
-            if (next >= 0 && keeping->wanted[next]) {
+    struct cells cells = label_cells_view(body->mesh);
+    for (int64_t c = 0; c < cells.count; c++) {
+        for (int k = 0; k <= dim && body->wanted[c]; k++) {
+            int32_t next = body->across[c * (dim + 1) + k];
+            if (next >= 0 && body->wanted[next]) {
                 continue;
             }
             if (facet != NULL) {
-                cell_face(&keeping->cells, c, k, facet + count * dim);
-                side[2 * count] = keeping->mesh->label[c];
-                side[2 * count + 1] = next >= 0 ? keeping->mesh->label[next] : 0;
+                cell_face(&cells, c, k, facet + count * dim);
+                side[2 * count] = body->mesh->label[c];
+                side[2 * count + 1] = next >= 0 ? body->mesh->label[next] : 0;
             }
             count++;
         }
@@ -111,19 +113,19 @@ enum status label_cells_drop(const bool *wanted, struct label_cells *mesh, struc
     return label_cells_compact(mesh, error);
 }
 
-int64_t label_cells_flood(struct label_cells_keeping *keeping, int64_t first, int32_t number, int64_t node)
+int64_t label_cells_flood(struct label_body *body, int64_t first, int32_t number, int64_t node)
 {
-    int corners = keeping->cells.dim + 1;
+    int corners = body->mesh->dim + 1;
     int64_t count = 0;
-    keeping->stack[count++] = (int32_t)first;
-    keeping->group[first] = number;
+    body->stack[count++] = (int32_t)first;
+    body->group[first] = number;
     for (int64_t i = 0; i < count; i++) {
-        int64_t face = (int64_t)keeping->stack[i] * corners;
+        int64_t face = (int64_t)body->stack[i] * corners;
         for (int64_t end = face + corners; face < end; face++) {
-            int32_t next = keeping->cells.node[face] != node ? keeping->across[face] : -1;
-            if (next >= 0 && keeping->wanted[next] && keeping->group[next] < 0) {
-                keeping->group[next] = number;
-                keeping->stack[count++] = next;
+            int32_t next = body->mesh->cell[face] != node ? body->across[face] : -1;
+            if (next >= 0 && body->wanted[next] && body->group[next] < 0) {
+                body->group[next] = number;
+                body->stack[count++] = next;
             }
         }
     }
@@ -131,21 +133,22 @@ int64_t label_cells_flood(struct label_cells_keeping *keeping, int64_t first, in
 }
 
 /* Leave out connected bodies around a single point of the lattice, or all but the largest body. */
-static void keep_bodies(struct label_cells_keeping *keeping, bool largest_only)
+static void keep_bodies(struct label_body *body)
 {
-    struct label_cells *mesh = keeping->mesh;
+    struct label_cells *mesh = body->mesh;
+    struct cells cells = label_cells_view(mesh);
     int32_t number = 0, largest = -1;
     double most = 0;
-    for (int64_t c = 0; c < keeping->cells.count; c++) {
+    for (int64_t c = 0; c < body->mesh->cell_count; c++) {
         double volume = 0;
-        if (!keeping->wanted[c] || keeping->group[c] >= 0) {
+        if (!body->wanted[c] || body->group[c] >= 0) {
             continue;
         }
-        int64_t count = label_cells_flood(keeping, c, number, -1);
-        bool speck = count <= (keeping->cells.dim == 3 ? 24 : 6);
+        int64_t count = label_cells_flood(body, c, number, -1);
+        bool speck = count <= (body->mesh->dim == 3 ? 24 : 6);
         for (int64_t i = 0; i < count; i++) {
-            volume += cell_volume(&keeping->cells, keeping->stack[i]);
-            keeping->wanted[keeping->stack[i]] = !speck;
+            volume += cell_volume(&cells, body->stack[i]);
+            body->wanted[body->stack[i]] = !speck;
         }
         mesh->specks += speck;
         mesh->speck_volume += speck ? volume : 0;
@@ -153,61 +156,43 @@ static void keep_bodies(struct label_cells_keeping *keeping, bool largest_only)
         most = fmax(most, volume);
         number++;
     }
-    for (int64_t c = 0; c < keeping->cells.count && largest_only; c++) {
-        keeping->wanted[c] = keeping->wanted[c] && keeping->group[c] == largest;
+    for (int64_t c = 0; c < mesh->cell_count && body->options->largest; c++) {
+        body->wanted[c] = body->wanted[c] && body->group[c] == largest;
     }
 }
 
-static void keeping_free(struct label_cells_keeping *keeping)
+enum status label_cells_keep(struct label_body *body, struct error *error)
 {
-    FREE_ALL(keeping->across, keeping->group, keeping->stack, keeping->from, keeping->wanted, keeping->apart);
-}
-
-enum status label_cells_keep(const struct labels *labels, const struct label_cells_options *options,
-                             const bool *between, struct label_cells *mesh, struct label_cells_kept *kept,
-                             struct error *error)
-{
-    int dim = mesh->dim;
+    struct label_cells *mesh = body->mesh;
+    struct cells cells = label_cells_view(mesh);
     int64_t count = mesh->cell_count;
     int32_t bodies = 0;
-    FREED_BY(star_free) struct label_cells_star star = {0};
-    FREED_BY(keeping_free)
-    struct label_cells_keeping keeping = {.mesh = mesh, .between = between, .cells = label_cells_view(mesh)};
-    *kept = (struct label_cells_kept){0};
-    RETURN_IF_ERROR(NEW_ARRAY(&kept->volume, labels->count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&keeping.across, count * (dim + 1), error));
-    RETURN_IF_ERROR(NEW_ARRAY(&keeping.wanted, count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&keeping.group, count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&keeping.stack, count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&keeping.from, count, error));
-    RETURN_IF_ERROR(cells_across(&keeping.cells, keeping.across, error));
-    RETURN_IF_ERROR(star_make(mesh, NULL, &star, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&body->volume, body->labels->count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&body->across, count * (mesh->dim + 1), error));
+    RETURN_IF_ERROR(NEW_ARRAY(&body->wanted, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&body->group, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&body->stack, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&body->from, count, error));
+    RETURN_IF_ERROR(cells_across(&cells, body->across, error));
     for (int64_t c = 0; c < count; c++) {
-        keeping.wanted[c] = options->keep[mesh->label[c]];
-        keeping.group[c] = -1;
+        body->wanted[c] = body->options->keep[mesh->label[c]];
+        body->group[c] = -1;
     }
-    keep_bodies(&keeping, options->largest);
-    memset(keeping.group, -1, (size_t)count * sizeof *keeping.group);
-    label_cells_join(&keeping, &star);
-    memset(keeping.group, -1, (size_t)count * sizeof *keeping.group);
+    RETURN_IF_ERROR(star_make(body, error));
+    keep_bodies(body);
+    memset(body->group, -1, (size_t)count * sizeof *body->group);
+    label_cells_join(body);
+    memset(body->group, -1, (size_t)count * sizeof *body->group);
     for (int64_t c = 0; c < count; c++) {
-        if (keeping.wanted[c] && keeping.group[c] < 0) {
-            label_cells_flood(&keeping, c, bodies++, -1);
+        if (body->wanted[c] && body->group[c] < 0) {
+            label_cells_flood(body, c, bodies++, -1);
         }
     }
-    RETURN_IF_ERROR(label_cells_cut_apart(&keeping, &star, error));
-    RETURN_IF_ERROR(label_cells_volume(labels, options, mesh, keeping.wanted, kept->volume, error));
-    mesh->facet_count = find_facets(&keeping, NULL, NULL);
-    RETURN_IF_ERROR(NEW_ARRAY(&mesh->facet, mesh->facet_count * dim, error));
+    RETURN_IF_ERROR(label_cells_cut_apart(body, error));
+    RETURN_IF_ERROR(label_cells_volume(body, error));
+    mesh->facet_count = find_facets(body, NULL, NULL);
+    RETURN_IF_ERROR(NEW_ARRAY(&mesh->facet, mesh->facet_count * mesh->dim, error));
     RETURN_IF_ERROR(NEW_ARRAY(&mesh->side, mesh->facet_count * 2, error));
-    find_facets(&keeping, mesh->facet, mesh->side);
-    kept->wanted = array_take(&keeping.wanted);
-    kept->apart = array_take(&keeping.apart);
-    return STATUS_OK;
-}
-
-void label_cells_kept_free(struct label_cells_kept *kept)
-{
-    FREE_ALL(kept->wanted, kept->apart, kept->volume);
-    *kept = (struct label_cells_kept){0};
+    find_facets(body, mesh->facet, mesh->side);
+    return star_make(body, error);
 }

@@ -103,20 +103,20 @@ static void hanging_free(struct hanging *hanging)
     FREE_ALL(hanging->body, hanging->fresh);
 }
 
-enum status label_cells_volume(const struct labels *labels, const struct label_cells_options *options,
-                               const struct label_cells *mesh, const bool *wanted, double *volume,
-                               struct error *error)
+enum status label_cells_volume(struct label_body *body, struct error *error)
 {
+    const struct labels *labels = body->labels;
+    const struct label_cells *mesh = body->mesh;
     int64_t voxels = labels->size[0] * labels->size[1] * labels->size[2];
     double voxel = labels_voxel_volume(labels);
-    const bool *keep = options->keep;
+    const bool *keep = body->options->keep;
     FREED_BY(hanging_free) struct hanging hanging = {.labels = labels, .keep = keep};
     NEW_SCRATCH(int32_t, owner, voxels, error);
     RETURN_IF_ERROR(NEW_ARRAY(&hanging.body, voxels, error));
     RETURN_IF_ERROR(own_voxels(labels, mesh, owner, error));
     for (int64_t v = 0; v < voxels; v++) {
         int32_t label = labels->label[v], there = owner[v] >= 0 ? mesh->label[owner[v]] : 0;
-        bool inside = owner[v] >= 0 && wanted[owner[v]];
+        bool inside = owner[v] >= 0 && body->wanted[owner[v]];
         owner[v] = inside ? there : -1;
         if (keep[label] ? there == label : !inside) {
             hanging.body[v] = inside || !keep[label] ? 1 : 2;
@@ -133,9 +133,9 @@ enum status label_cells_volume(const struct labels *labels, const struct label_c
     for (int64_t v = 0; v < voxels; v++) {
         int32_t label = abs(hanging.body[v]) == 1 ? labels->label[v] : owner[v];
         if (label >= 0 && keep[label]) {
-            volume[label] += voxel;
+            body->volume[label] += voxel;
         }
-        if (options->largest && abs(hanging.body[v]) == 2) {
+        if (body->options->largest && abs(hanging.body[v]) == 2) {
             labels->label[v] = 0;
         }
     }
