@@ -2,7 +2,7 @@
  * weight function, the unit and the place; gradients; the limits of the modified basis; convergence. */
 #include "approx_fixture.h"
 
-#include "approx/mls/mls_kernel.h"
+#include "approx/mls/mls_vector.h"
 
 TEST(weights)
 {

@@ -1,7 +1,5 @@
 /* Moving least squares by orthogonal (QR) factorisation of the weighted monomials, for points whose moment
  * matrix may be ill-conditioned. It loses half as many digits as the normal equations. */
-#include "approx/mls/mls_kernel.h"
-
 #include "approx/mls/mls_vector.h"
 
 #include <gsl/gsl_blas.h>
@@ -154,7 +152,7 @@ static void orthogonal_gradients(int dim, int m, const struct mls_factor *factor
             coefficient[k][a] = g[k];
         }
     }
-    (void)gradients(dim, m, coefficient, point);
+    (void)make_gradients(dim, m, coefficient, point);
 }
 
 enum mls_verdict mls_orthogonal(const struct mls *mls, const struct mls_support *support, double *scratch,
