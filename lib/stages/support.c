@@ -36,7 +36,7 @@ static enum status put_lists(struct stream *stream, const struct support_options
 {
     const struct section *points = listed->points;
     const char *prefix = listed->prefix;
-    FREED_BY(support_free) struct support_lists lists = {0};
+    FREED_BY(support_free) struct neighbours lists = {0};
     int64_t count = points->rows;
     RETURN_IF_ERROR(
         support_build(options, space, &listed->places, count, points->data, points->name, &lists, error));

@@ -65,7 +65,7 @@ static inline void scattered_free(struct scattered *cloud)
 struct table {
     double *radius, *phi, *dphi;
     struct support_space space;
-    struct support_lists lists;
+    struct neighbours lists;
 };
 
 static inline void table_free(struct table *table)
@@ -101,7 +101,7 @@ static inline enum status tabulate(const struct support_options *options, int64_
         int64_t pairs = table->lists.ptr[point_count];
         table->phi = malloc((size_t)pairs * sizeof(double));
         table->dphi = malloc((size_t)(pairs * dim) * sizeof(double));
-        struct neighbours lists = support_view(&table->lists);
+        struct neighbours lists = table->lists;
         status = shape_table(&options->mls, x, table->radius, &lists, points, "points.x", table->phi,
                              table->dphi, error);
     }

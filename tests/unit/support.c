@@ -55,7 +55,7 @@ TEST_IN_EACH_DIM(lists_against_brute_force)
         struct scattered cloud = scatter(dim, dim == 2 ? 20 : 8, POINTS, &places[2], 0.4, 17);
         struct support_options options = support_defaults(dim);
         FREED_BY(support_space_free) struct support_space space = {0};
-        FREED_BY(support_free) struct support_lists lists = {0};
+        FREED_BY(support_free) struct neighbours lists = {0};
         double *radius = zeros(cloud.count, sizeof *radius);
         options.widen = false;
         for (int64_t n = 0; n < cloud.count; n++) {
@@ -148,7 +148,7 @@ TEST(nearest_with_ties)
     for (int i = 0; i < 4; i++) {
         struct support_options options = {.radius = 2.1, .most = most[i], .mls = mls_default(2)};
         FREED_BY(support_space_free) struct support_space space = {0};
-        FREED_BY(support_free) struct support_lists lists = {0};
+        FREED_BY(support_free) struct neighbours lists = {0};
         const struct cells none = {.dim = 2, .node_count = 25, .x = x};
         double radius[25];
         GOOD(support_radii(&options, 25, NULL, radius, &error));

@@ -104,7 +104,7 @@ TEST_IN_EACH_DIM(lists_stop_at_the_interface)
     options.widen = false;
     FREED_BY(halves_free) struct halves halves = make_halves(dim, &options);
     FREED_BY(support_space_free) struct support_space space = {0};
-    FREED_BY(support_free) struct support_lists lists = {0};
+    FREED_BY(support_free) struct neighbours lists = {0};
     SCRATCH double *x = scatter_points(dim, COUNT);
     int64_t crossing = 0;
     options.side = halves.side;
@@ -132,7 +132,7 @@ TEST_IN_EACH_DIM(places_tell_the_side)
     struct support_options options = support_defaults(dim);
     FREED_BY(halves_free) struct halves halves = make_halves(dim, &options);
     FREED_BY(support_space_free) struct support_space space = {0};
-    struct support_lists found, given;
+    struct neighbours found, given;
     int64_t nodes = halves.cells.node_count, cells = halves.cells.count;
     double *middle = zeros(cells * dim, sizeof *middle);
     int32_t *cell = zeros(cells, sizeof *cell);
@@ -194,7 +194,7 @@ TEST(inclusions)
     struct visibility_places at_nodes = {.nodes = true};
     for (int single = 0; single < 2; single++) {
         FREED_BY(support_space_free) struct support_space space = {0};
-        FREED_BY(support_free) struct support_lists lists = {0};
+        FREED_BY(support_free) struct neighbours lists = {0};
         for (int64_t c = 0; c < halves.cells.count; c++) {
             double middle[2];
             cell_centroid(&halves.cells, c, middle);
@@ -214,7 +214,7 @@ TEST(failures_name_the_row)
     struct support_options options = support_defaults(2);
     FREED_BY(halves_free) struct halves halves = make_halves(2, &options);
     FREED_BY(support_space_free) struct support_space space = {0};
-    struct support_lists lists;
+    struct neighbours lists;
     static const double x[] = {0.2, 0.2, 0.8, 0.8, NAN, 0.8, 0.7, 0.7};
     options.side = halves.side;
     GOOD(support_space_build(&options, &halves.cells, halves.radius, &space, &error));

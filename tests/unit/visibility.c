@@ -100,7 +100,7 @@ struct found {
     double *x;
     int32_t *cell;
     struct support_options options;
-    struct support_lists lists, nodes;
+    struct neighbours lists, nodes;
 };
 static struct found found;
 
@@ -144,7 +144,7 @@ static void lose(void)
     free(found.cell);
 }
 
-static bool same_lists(const struct support_lists *a, const struct support_lists *b)
+static bool same_lists(const struct neighbours *a, const struct neighbours *b)
 {
     size_t pairs = (size_t)a->ptr[a->count];
     return a->count == b->count && memcmp(a->ptr, b->ptr, (size_t)(a->count + 1) * sizeof *a->ptr) == 0 &&
@@ -157,7 +157,7 @@ TEST_IN_EACH_DIM(convex)
 {
     for (int wide = 0; wide < 2; wide++) {
         FREED_BY(support_space_free) struct support_space space = {0};
-        struct support_lists plain;
+        struct neighbours plain;
         build(dim, (int[3]){7, 6, 5}, all_solid, one_sheet);
         find(wide ? 2.3 : 0.9, true);
         const struct cells none = {.dim = dim, .node_count = body.node_count, .x = body.x};
@@ -191,7 +191,7 @@ static int sheet_of_side(const int *cube, int i, int j, int k)
     return cube[0] >= second_from;
 }
 
-static void check_apart(const struct support_lists *lists, const double *x)
+static void check_apart(const struct neighbours *lists, const double *x)
 {
     for (int64_t p = 0; p < lists->count; p++) {
         int own = 0;
@@ -238,7 +238,7 @@ TEST_IN_EACH_DIM(lobes)
     find(2.1, true);
     bool shared_sees_both = false;
     for (int nodes = 0; nodes < 2; nodes++) {
-        const struct support_lists *lists = nodes ? &found.nodes : &found.lists;
+        const struct neighbours *lists = nodes ? &found.nodes : &found.lists;
         const double *x = nodes ? body.x : found.x;
         for (int64_t p = 0; p < lists->count; p++) {
             bool of_first = x[p * dim] + x[p * dim + 1] < 8.0, both = false;

@@ -134,7 +134,7 @@ static double norm_of(const double *matrix, int64_t n)
 
 /* united[] = the union of the lists of the points [first, last), ascending; it has room for all of their
  * entries. */
-static int64_t unite(const struct support_lists *lists, int64_t first, int64_t last, int64_t *united)
+static int64_t unite(const struct neighbours *lists, int64_t first, int64_t last, int64_t *united)
 {
     int64_t count = 0;
     for (int64_t i = lists->ptr[first]; i < lists->ptr[last]; i++) {
@@ -147,7 +147,7 @@ static int64_t unite(const struct support_lists *lists, int64_t first, int64_t l
 static enum status measure(const struct refinement *refinement, const struct field_table *sample,
                            int64_t leaf, double volume, double *norm, double *change, struct error *error)
 {
-    const struct support_lists *lists = &sample->lists;
+    const struct neighbours *lists = &sample->lists;
     int dim = refinement->space.cells.dim, per_rule = refinement->rule.points;
     int64_t per_leaf = per_rule * (1 + children_of(dim)), first = leaf * per_leaf, last = first + per_leaf;
     int64_t pairs = lists->ptr[last] - lists->ptr[first];

@@ -79,8 +79,7 @@ enum status field_table_at(const struct field_shapes *shapes, const struct suppo
     if (gradients) {
         RETURN_IF_ERROR(NEW_ARRAY(&table->dphi, table->lists.ptr[count] * space->cells.dim, error));
     }
-    struct neighbours lists = support_view(&table->lists);
-    return shape_table(&shapes->shapes, space->cells.x, space->radius, &lists, x, what, table->phi,
+    return shape_table(&shapes->shapes, space->cells.x, space->radius, &table->lists, x, what, table->phi,
                        table->dphi, error);
 }
 

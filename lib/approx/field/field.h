@@ -49,7 +49,7 @@ MUST_CHECK enum status field_carry(const struct cells *from, int64_t cols, const
 
 /* Lists, values and gradients of shape functions at points. */
 struct field_table {
-    struct support_lists lists;
+    struct neighbours lists;
     double *phi;  /* lists.ptr[lists.count] */
     double *dphi; /* lists.ptr[lists.count] * dim, 1/m; NULL: not wanted */
 };

@@ -7,16 +7,6 @@
 
 static const int64_t chunk_points = 512;
 
-struct neighbours support_view(const struct support_lists *lists)
-{
-    return (struct neighbours){
-        .count = lists->count,
-        .ptr = lists->ptr,
-        .idx = lists->idx,
-        .widen = lists->widen,
-    };
-}
-
 /* The input of a table, and its points. */
 struct tabulation {
     const struct mls *mls;

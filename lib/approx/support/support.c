@@ -256,7 +256,7 @@ static void add_steep(struct steep_points *steep, const struct steep_points *mor
 /* Append the neighbours of the points [first, last) to the worker's list; lists->ptr receives their
  * numbers. */
 static enum status build_chunk(const struct search *search, int64_t first, int64_t last,
-                               struct support_lists *lists, struct worker *worker, struct error *error)
+                               struct neighbours *lists, struct worker *worker, struct error *error)
 {
     worker->list.count = 0;
     worker->steep = (struct steep_points){0};
@@ -279,7 +279,7 @@ static enum status build_chunk(const struct search *search, int64_t first, int64
 
 /* Append a worker's list of the points [first, last) to `all`; turn counts into lists->ptr, and update the
  * statistics. */
-static enum status append_chunk(struct support_lists *lists, int64_t first, int64_t last,
+static enum status append_chunk(struct neighbours *lists, int64_t first, int64_t last,
                                 const struct worker *worker, struct index_list *all, struct error *error)
 {
     const struct index_list *own = &worker->list;
@@ -302,8 +302,8 @@ static enum status append_chunk(struct support_lists *lists, int64_t first, int6
 
 /* Build all chunks and append them to `all` in order. The failure of the first chunk that failed is
  * reported. */
-static enum status build_chunks(const struct search *search, struct support_lists *lists,
-                                struct index_list *all, struct error *error)
+static enum status build_chunks(const struct search *search, struct neighbours *lists, struct index_list *all,
+                                struct error *error)
 {
     int64_t chunk_count = (lists->count + chunk_points - 1) / chunk_points;
     enum status failure = STATUS_OK;
@@ -349,10 +349,10 @@ void support_space_free(struct support_space *space)
 
 enum status support_build(const struct support_options *options, const struct support_space *space,
                           const struct visibility_places *places, int64_t count, const double *x,
-                          const char *what, struct support_lists *lists, struct error *error)
+                          const char *what, struct neighbours *lists, struct error *error)
 {
     FREED_BY(index_list_free) struct index_list all = {0};
-    *lists = (struct support_lists){.count = count, .widest = 1.0};
+    *lists = (struct neighbours){.count = count, .widest = 1.0};
     struct search search = {.options = options,
                             .grid = &space->grid,
                             .visibility = space->visibility.grid != NULL ? &space->visibility : NULL,
@@ -373,8 +373,8 @@ enum status support_build(const struct support_options *options, const struct su
     return STATUS_OK;
 }
 
-void support_free(struct support_lists *lists)
+void support_free(struct neighbours *lists)
 {
     FREE_ALL(lists->ptr, lists->idx, lists->widen);
-    *lists = (struct support_lists){0};
+    *lists = (struct neighbours){0};
 }

@@ -27,8 +27,8 @@ struct steep_points {
     double steepness; /* and its largest |grad phi| times the spacing */
 };
 
-/* Neighbour lists of `count` points (CSR). */
-struct support_lists {
+/* Neighbour lists of `count` points (CSR); of a view of lists elsewhere only the first four. */
+struct neighbours {
     int64_t count;
     int64_t *ptr;    /* count + 1 */
     int32_t *idx;    /* ptr[count] node indices, ascending within a point */
@@ -75,8 +75,8 @@ void support_space_free(struct support_space *space);
  * functions report that. STATUS_INPUT for coordinates that are not finite. */
 MUST_CHECK enum status support_build(const struct support_options *options, const struct support_space *space,
                                      const struct visibility_places *places, int64_t count, const double *x,
-                                     const char *what, struct support_lists *lists, struct error *error);
-void support_free(struct support_lists *lists);
+                                     const char *what, struct neighbours *lists, struct error *error);
+void support_free(struct neighbours *lists);
 
 /* Print "(x, y[, z])" of a point into text[96], for messages; returns text. POINT_TEXT: a text that lasts as
  * long as the block. */
