@@ -29,22 +29,11 @@ static bool contains(int dim, const struct shape *shape, const double *point)
     }
 }
 
-void item_centre(const struct items *items, int64_t item, double *centre)
-{
-    for (int k = 0; k < items->dim; k++) {
-        double sum = 0;
-        for (int c = 0; c < items->corners; c++) {
-            sum += items->x[(int64_t)items->item[item * items->corners + c] * items->dim + k];
-        }
-        centre[k] = sum / items->corners;
-    }
-}
-
 void items_in_shape(const struct items *items, const struct shape *shape, bool *chosen)
 {
     for (int64_t i = 0; i < items->count; i++) {
         double centre[3];
-        item_centre(items, i, centre);
+        vector_middle(items->dim, items->x, items->corners, items->item + i * items->corners, centre);
         chosen[i] = shape->kind == SHAPE_PLANE || contains(items->dim, shape, centre);
         for (int c = 0; c < items->corners && shape->kind == SHAPE_PLANE; c++) {
             int32_t node = items->item[i * items->corners + c];
@@ -132,7 +121,8 @@ enum status items_near(const struct items *items, const struct items *others, do
         reaches[p] = reach;
     }
     for (int64_t i = 0; i < items->count; i++) {
-        item_centre(items, i, centre + i * items->dim);
+        vector_middle(items->dim, items->x, items->corners, items->item + i * items->corners,
+                      centre + i * items->dim);
     }
     RETURN_IF_ERROR(items_nearest(others, reaches, items->count, centre, nearest, error));
     for (int64_t i = 0; i < items->count; i++) {

@@ -30,9 +30,6 @@ struct shape {
     double slack; /* points within this distance of the shape count as inside, m, for round-off */
 };
 
-/* Mean of the corners of an item. */
-void item_centre(const struct items *items, int64_t item, double *centre);
-
 /* chosen[items->count]: items whose centre lies in the shape; for SHAPE_PLANE items with all corners in
  * it. */
 void items_in_shape(const struct items *items, const struct shape *shape, bool *chosen);
