@@ -1,6 +1,6 @@
 #include "approx/field/scattered_fit.h"
 
-#include "approx/mls/weight.h"
+#include "approx/mls/mls.h"
 #include "base/memory.h"
 #include "base/vector.h"
 
@@ -189,7 +189,7 @@ static void fill_columns(const struct scattered_fit *fit, const double *x,
     double mean[3] = {0.0, 0.0, 0.0}, xi[3], p[MOST_MONOMIALS];
     for (int64_t i = 0; i < nearest->count; i++) {
         double weight, slope, relative = nearest->distance[i] / radius;
-        weight_evaluate(WEIGHT_QUARTIC, relative * relative, &weight, &slope);
+        weight_quartic(relative * relative, &weight, &slope);
         root[i] = sqrt(weight);
         total += weight;
         add_scaled(dim, weight, fit->row + nearest->node[i] * fit->row_size, mean);

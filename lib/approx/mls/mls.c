@@ -31,19 +31,6 @@ int mls_basis_size(const struct mls *mls)
     return 1 + mls->dim + (mls->basis == BASIS_LINEAR ? 0 : mls_second_order_count(mls->dim));
 }
 
-const char *mls_verdict_text(enum mls_verdict verdict)
-{
-    switch (verdict) {
-    case MLS_GOOD:
-        return "good";
-    case MLS_TOO_FEW:
-        return "too few neighbours";
-    case MLS_ILL_CONDITIONED:
-        break;
-    }
-    return "singular or ill-conditioned moment matrix";
-}
-
 void mls_work_free(struct mls_work *work)
 {
     free(work->values);

@@ -1,13 +1,14 @@
-#include "approx/cells/hanging.h"
+#include "approx/points/hanging.h"
 
+#include "approx/points/point_grid.h"
 #include "base/box.h"
 #include "base/lists.h"
 #include "base/memory.h"
+#include "base/round_off.h"
 #include "base/sets.h"
 #include "base/vector.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* A node lies on a facet if it is as near to it as this share of the facet's longest edge, and not as near to
@@ -16,43 +17,22 @@ static const double on_facet = 1e-4;
 
 enum { JOINED = 1, APART = 2 };
 
-/* The nodes of a boundary, sorted along the longest side of its box. */
+/* The nodes of a boundary. */
 struct search {
     const struct cells *cells;
     const struct faces *boundary;
-    int axis;
-    int64_t count;
-    struct placed *node;
+    struct point_grid grid; /* of all nodes */
+    struct index_list near;
     int64_t *face_ptr; /* the boundary faces at each node */
     int32_t *face_idx;
     bool *named; /* each boundary face */
 };
 
-static enum status search_build(const struct cells *cells, const struct faces *boundary,
-                                struct search *search, struct error *error)
-{
-    int dim = cells->dim;
-    struct box box = box_of(dim, cells->node_count, cells->x);
-    *search = (struct search){.cells = cells, .boundary = boundary};
-    for (int a = 1; a < dim; a++) {
-        bool longer = box.high[a] - box.low[a] > box.high[search->axis] - box.low[search->axis];
-        search->axis = longer ? a : search->axis;
-    }
-    RETURN_IF_ERROR(lists_by_row(boundary->count, dim, boundary->node, cells->node_count, &search->face_ptr,
-                                 &search->face_idx, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&search->node, cells->node_count, error));
-    for (int64_t n = 0; n < cells->node_count; n++) {
-        if (search->face_ptr[n + 1] > search->face_ptr[n]) {
-            search->node[search->count++] = (struct placed){cells->x[n * dim + search->axis], n};
-        }
-    }
-    qsort(search->node, (size_t)search->count, sizeof *search->node, compare_placed);
-    return STATUS_OK;
-}
-
 static void search_free(struct search *search)
 {
-    FREE_ALL(search->node, search->face_ptr, search->face_idx, search->named);
+    point_grid_free(&search->grid);
+    index_list_free(&search->near);
+    FREE_ALL(search->face_ptr, search->face_idx, search->named);
 }
 
 /* Whether all nodes but one of a face are among corner[count]. */
@@ -120,12 +100,13 @@ static bool is_beside(const struct search *search, int64_t facet, int32_t node)
 }
 
 /* Mark the nodes that hang on a facet. */
-static void mark_hanging(const struct search *search, int64_t facet, int32_t body[], int8_t mark[])
+static enum status mark_hanging(struct search *search, int64_t facet, int32_t body[], int8_t mark[],
+                                struct error *error)
 {
     int dim = search->cells->dim;
     const int32_t *node = search->boundary->node + facet * dim;
     const double *corner[3];
-    double longest = 0.0, low[3], high[3];
+    double longest = 0.0;
     for (int k = 0; k < dim; k++) {
         corner[k] = search->cells->x + (int64_t)node[k] * dim;
         for (int l = 0; l < k; l++) {
@@ -133,19 +114,17 @@ static void mark_hanging(const struct search *search, int64_t facet, int32_t bod
         }
     }
     double near = on_facet * sqrt(longest);
+    struct box box = box_of_nodes(dim, search->cells->x, node, dim);
     for (int a = 0; a < dim; a++) {
-        low[a] = fmin(fmin(corner[0][a], corner[1][a]), corner[dim - 1][a]) - near;
-        high[a] = fmax(fmax(corner[0][a], corner[1][a]), corner[dim - 1][a]) + near;
+        box.low[a] -= near;
+        box.high[a] += near;
     }
-    const struct placed begin = {low[search->axis], -1};
-    for (int64_t i = lower_bound(&begin, search->node, search->count, sizeof begin, compare_placed);
-         i < search->count && search->node[i].place <= high[search->axis]; i++) {
-        int32_t n = (int32_t)search->node[i].item;
+    search->near.count = 0;
+    RETURN_IF_ERROR(point_grid_query_box(&search->grid, box.low, box.high, 1.0, &search->near, error));
+    for (int64_t i = 0; i < search->near.count; i++) {
+        int32_t n = search->near.index[i];
         const double *x = search->cells->x + (int64_t)n * dim;
-        bool out = false;
-        for (int a = 0; a < dim; a++) {
-            out = out || x[a] < low[a] || x[a] > high[a];
-        }
+        bool out = search->face_ptr[n + 1] == search->face_ptr[n];
         for (int k = 0; k < dim && !out; k++) {
             out = vector_distance2(dim, corner[k], x) <= near * near;
         }
@@ -155,6 +134,7 @@ static void mark_hanging(const struct search *search, int64_t facet, int32_t bod
             mark[n] |= one_body && !is_lip(search, facet, n, near) ? JOINED : APART;
         }
     }
+    return STATUS_OK;
 }
 
 enum status cells_find_hanging(const struct cells *cells, int64_t named_count, const int32_t *named,
@@ -162,17 +142,24 @@ enum status cells_find_hanging(const struct cells *cells, int64_t named_count, c
 {
     int dim = cells->dim;
     FREED_BY(faces_free) struct faces boundary = {0};
-    FREED_BY(search_free) struct search search = {0};
+    FREED_BY(search_free) struct search search = {.cells = cells, .boundary = &boundary};
+    struct box box = box_of(dim, cells->node_count, cells->x);
     *joined = *apart = (struct hanging_nodes){0};
     RETURN_IF_ERROR(faces_build(cells, true, &boundary, error));
-    RETURN_IF_ERROR(search_build(cells, &boundary, &search, error));
+    RETURN_IF_ERROR(lists_by_row(boundary.count, dim, boundary.node, cells->node_count, &search.face_ptr,
+                                 &search.face_idx, error));
+    NEW_SCRATCH(double, radius, cells->node_count, error);
+    for (int64_t n = 0; n < cells->node_count; n++) {
+        radius[n] = fmax(ROUND_OFF * box_side(&box), 1e-100);
+    }
+    RETURN_IF_ERROR(point_grid_build(&search.grid, dim, cells->node_count, cells->x, radius, error));
     RETURN_IF_ERROR(NEW_ARRAY(&search.named, boundary.count, error));
     RETURN_IF_ERROR(faces_mark(&boundary, named_count, named, search.named, error));
     NEW_SCRATCH(int32_t, body, cells->node_count, error);
     NEW_SCRATCH(int8_t, mark, cells->node_count, error);
     set_join_cells(cells->node_count, cells->count, dim + 1, cells->node, body);
     for (int64_t f = 0; f < boundary.count; f++) {
-        mark_hanging(&search, f, body, mark);
+        RETURN_IF_ERROR(mark_hanging(&search, f, body, mark, error));
     }
     for (int64_t n = 0; n < cells->node_count; n++) {
         struct hanging_nodes *of = (mark[n] & JOINED) != 0 ? joined : apart;
