@@ -31,7 +31,7 @@ struct listed {
 };
 
 static enum status put_lists(struct stream *stream, const struct support_options *options,
-                             const struct support_space *space, const struct listed *listed,
+                             const struct visibility *space, const struct listed *listed,
                              struct support_report *report, struct error *error)
 {
     const struct section *points = listed->points;
@@ -93,7 +93,7 @@ static enum status places_of_face_points(const struct stream *stream, const stru
 static enum status stage_lists(struct stream *stream, const struct support_options *options,
                                struct support_report *report, struct error *error)
 {
-    FREED_BY(support_space_free) struct support_space space = {0};
+    FREED_BY(visibility_free) struct visibility space = {0};
     const struct section *points, *facepoints;
     struct support_options actual = *options;
     struct cells cells;
@@ -107,8 +107,8 @@ static enum status stage_lists(struct stream *stream, const struct support_optio
         RETURN_IF_ERROR(
             stream_put_copy(stream, "support.side", TYPE_I4, cells.count, 1, "", actual.side, error));
     }
-    RETURN_IF_ERROR(
-        support_space_build(&actual, &cells, stream_find(stream, "support.radius")->data, &space, error));
+    RETURN_IF_ERROR(visibility_build(&cells, stream_find(stream, "support.radius")->data, actual.visibility,
+                                     actual.side, &space, error));
     bool smoothed = points_are_smoothed(points); /* gradients come from the faces alone */
     if (!smoothed) {
         listed = (struct listed){.points = points, .prefix = "nbr", .called = "integration points"};

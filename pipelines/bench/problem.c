@@ -20,10 +20,11 @@ static enum status build_lists(const struct problem *problem, int64_t count, con
                                const char *name, struct neighbours *lists, struct error *error)
 {
     struct support_options options = problem->options;
-    FREED_BY(support_space_free) struct support_space space = {0};
+    FREED_BY(visibility_free) struct visibility space = {0};
     options.visibility = VISIBILITY_DISTANCE;
     support_free(lists);
-    RETURN_IF_ERROR(support_space_build(&options, &problem->cells, problem->radius, &space, error));
+    RETURN_IF_ERROR(
+        visibility_build(&problem->cells, problem->radius, options.visibility, options.side, &space, error));
     return support_build(&options, &space, NULL, count, x, name, lists, error);
 }
 

@@ -95,7 +95,7 @@ static bool all_solid(const int *cube)
 /* Supports and what they find at points in cells, some of them off the middle. */
 struct found {
     double radius[MOST_NODES];
-    struct support_space space;
+    struct visibility space;
     int64_t count;
     double *x;
     int32_t *cell;
@@ -126,7 +126,8 @@ static void find(double radius, bool widen)
             }
         }
     }
-    GOOD(support_space_build(&found.options, &body.cells, found.radius, &found.space, &error));
+    GOOD(visibility_build(&body.cells, found.radius, found.options.visibility, found.options.side,
+                          &found.space, &error));
     struct visibility_places inside = {.cell = found.cell, .points_per_row = 1};
     GOOD(support_build(&found.options, &found.space, &inside, found.count, found.x, "points", &found.lists,
                        &error));
@@ -137,7 +138,7 @@ static void find(double radius, bool widen)
 
 static void lose(void)
 {
-    support_space_free(&found.space);
+    visibility_free(&found.space);
     support_free(&found.lists);
     support_free(&found.nodes);
     free(found.x);
@@ -156,12 +157,13 @@ static bool same_lists(const struct neighbours *a, const struct neighbours *b)
 TEST_IN_EACH_DIM(convex)
 {
     for (int wide = 0; wide < 2; wide++) {
-        FREED_BY(support_space_free) struct support_space space = {0};
+        FREED_BY(visibility_free) struct visibility space = {0};
         struct neighbours plain;
         build(dim, (int[3]){7, 6, 5}, all_solid, one_sheet);
         find(wide ? 2.3 : 0.9, true);
         const struct cells none = {.dim = dim, .node_count = body.node_count, .x = body.x};
-        GOOD(support_space_build(&found.options, &none, found.radius, &space, &error));
+        GOOD(visibility_build(&none, found.radius, found.options.visibility, found.options.side, &space,
+                              &error));
         assert_true(wide || found.lists.widened > 0);
         GOOD(support_build(&found.options, &space, NULL, found.count, found.x, "points", &plain, &error));
         assert_true(same_lists(&plain, &found.lists));

@@ -32,14 +32,14 @@ static void leaves_free(struct leaves *leaves)
 /* The input of the refinement. */
 struct refinement {
     const struct adaptive_options *options;
-    struct support_space space;
+    struct visibility space;
     struct quadrature_rule rule;
     double *norm; /* |K| of each cell, by the rule on the whole cell */
 };
 
 static void refinement_free(struct refinement *refinement)
 {
-    support_space_free(&refinement->space);
+    visibility_free(&refinement->space);
     free(refinement->norm);
 }
 
@@ -359,7 +359,8 @@ enum status adaptive_points_build(const struct adaptive_options *options, const 
     int64_t marked;
     *points = (struct adaptive_points){0};
     RETURN_IF_ERROR(quadrature_cell_rule(cells->dim, options->rule_points, &refinement.rule, error));
-    RETURN_IF_ERROR(support_space_build(&options->support, cells, radius, &refinement.space, error));
+    RETURN_IF_ERROR(visibility_build(cells, radius, options->support.visibility, options->support.side,
+                                     &refinement.space, error));
     RETURN_IF_ERROR(NEW_ARRAY(&refinement.norm, cells->count, error));
     RETURN_IF_ERROR(start(cells, &leaves, error));
     do {

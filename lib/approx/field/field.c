@@ -69,7 +69,7 @@ enum status field_outside(const struct cells *cells, const double *spacing, doub
     return STATUS_OK;
 }
 
-enum status field_table_at(const struct field_shapes *shapes, const struct support_space *space,
+enum status field_table_at(const struct field_shapes *shapes, const struct visibility *space,
                            const struct visibility_places *places, int64_t count, const double *x,
                            const char *what, bool gradients, struct field_table *table, struct error *error)
 {
@@ -79,17 +79,18 @@ enum status field_table_at(const struct field_shapes *shapes, const struct suppo
     if (gradients) {
         RETURN_IF_ERROR(NEW_ARRAY(&table->dphi, table->lists.ptr[count] * space->cells.dim, error));
     }
-    return shape_table(&shapes->shapes, space->cells.x, space->radius, &table->lists, x, what, table->phi,
-                       table->dphi, error);
+    return shape_table(&shapes->shapes, space->cells.x, space->grid.radius, &table->lists, x, what,
+                       table->phi, table->dphi, error);
 }
 
 enum status field_table_build(const struct field_shapes *shapes, const struct cells *cells, int64_t count,
                               const double *x, const char *what, struct field_table *table,
                               struct error *error)
 {
-    FREED_BY(support_space_free) struct support_space space = {0};
+    FREED_BY(visibility_free) struct visibility space = {0};
     *table = (struct field_table){0};
-    RETURN_IF_ERROR(support_space_build(&shapes->support, cells, shapes->radius, &space, error));
+    RETURN_IF_ERROR(visibility_build(cells, shapes->radius, shapes->support.visibility, shapes->support.side,
+                                     &space, error));
     return field_table_at(shapes, &space, NULL, count, x, what, false, table, error);
 }
 
@@ -204,7 +205,7 @@ static double determinant_at(int dim, const struct field_table *table, int64_t p
     return dim == 2 ? determinant2(F[0], F[1]) : determinant3(F[0], F[1], F[2]);
 }
 
-enum status field_least_determinants(const struct field_shapes *shapes, const struct support_space *space,
+enum status field_least_determinants(const struct field_shapes *shapes, const struct visibility *space,
                                      int64_t count, const int32_t *cell, const double *u, double *least,
                                      struct error *error)
 {

@@ -35,7 +35,7 @@ static enum status find_gradients(const struct nodal_field *field, double *gradi
     const struct field_shapes *shapes = field->shapes != NULL ? field->shapes : &fit;
     const double *u = field->shapes != NULL ? field->parameters : field->values;
     struct visibility_places places = {.nodes = true};
-    FREED_BY(support_space_free) struct support_space space = {0};
+    FREED_BY(visibility_free) struct visibility space = {0};
     FREED_BY(field_table_free) struct field_table table = {0};
     NEW_SCRATCH(double, radius, nodes, error);
     fit.support.mls.basis = BASIS_QUADRATIC;
@@ -46,7 +46,8 @@ static enum status find_gradients(const struct nodal_field *field, double *gradi
         RETURN_IF_ERROR(field_spacing(cells, spacing, error));
         RETURN_IF_ERROR(support_radii(&fit.support, nodes, spacing, radius, error));
     }
-    RETURN_IF_ERROR(support_space_build(&shapes->support, cells, shapes->radius, &space, error));
+    RETURN_IF_ERROR(visibility_build(cells, shapes->radius, shapes->support.visibility, shapes->support.side,
+                                     &space, error));
     RETURN_IF_ERROR(field_table_at(shapes, &space, &places, nodes, cells->x, "nodes", true, &table, error));
     for (int64_t n = 0; n < nodes; n++) {
         for (int64_t p = table.lists.ptr[n]; p < table.lists.ptr[n + 1]; p++) {

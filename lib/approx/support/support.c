@@ -330,32 +330,15 @@ static enum status build_chunks(const struct search *search, struct neighbours *
     return failure;
 }
 
-enum status support_space_build(const struct support_options *options, const struct cells *cells,
-                                const double *radius, struct support_space *space, struct error *error)
-{
-    *space = (struct support_space){.cells = *cells, .radius = radius};
-    RETURN_IF_ERROR(point_grid_build(&space->grid, cells->dim, cells->node_count, cells->x, radius, error));
-    return options->visibility == VISIBILITY_CELLS && cells->count > 0
-               ? visibility_build(cells, options->side, &space->grid, &space->visibility, error)
-               : STATUS_OK;
-}
-
-void support_space_free(struct support_space *space)
-{
-    visibility_free(&space->visibility);
-    point_grid_free(&space->grid);
-    *space = (struct support_space){0};
-}
-
-enum status support_build(const struct support_options *options, const struct support_space *space,
+enum status support_build(const struct support_options *options, const struct visibility *visibility,
                           const struct visibility_places *places, int64_t count, const double *x,
                           const char *what, struct neighbours *lists, struct error *error)
 {
     FREED_BY(index_list_free) struct index_list all = {0};
     *lists = (struct neighbours){.count = count, .widest = 1.0};
     struct search search = {.options = options,
-                            .grid = &space->grid,
-                            .visibility = space->visibility.grid != NULL ? &space->visibility : NULL,
+                            .grid = &visibility->grid,
+                            .visibility = visibility->across != NULL ? visibility : NULL,
                             .x = x,
                             .what = what};
     RETURN_IF_ERROR(NEW_ARRAY(&lists->ptr, count + 1, error));

@@ -95,7 +95,7 @@ static void note_facet(struct visibility *visibility, const int32_t *facet, int3
     int dim = visibility->cells.dim;
     const double *x = visibility->cells.x, *y = x + (int64_t)node * dim;
     double area[3] = {0.0, 0.0, 0.0}, middle[3], from[3], radius = 0.0;
-    double tolerance = COARSE_ROUND_OFF * visibility->grid->radius[node];
+    double tolerance = COARSE_ROUND_OFF * visibility->grid.radius[node];
     face_area_vector(dim, x, facet, area);
     vector_middle(dim, x, dim, facet, middle);
     vector_subtract(dim, y, middle, from);
@@ -132,7 +132,7 @@ static enum status note_face(struct visibility *visibility, int64_t cell, int ve
     cell_face(cells, cell, vertex, facet);
     struct box box = box_of_nodes(cells->dim, cells->x, facet, cells->dim);
     near->count = 0;
-    RETURN_IF_ERROR(point_grid_query_box(visibility->grid, box.low, box.high, 1.0, near, error));
+    RETURN_IF_ERROR(point_grid_query_box(&visibility->grid, box.low, box.high, 1.0, near, error));
     for (int64_t i = 0; i < near->count; i++) {
         int32_t node = near->index[i];
         if (sides.cell == NULL || is_of(visibility, &sides, node, sides.cell[cell])) {
@@ -142,14 +142,21 @@ static enum status note_face(struct visibility *visibility, int64_t cell, int ve
     return STATUS_OK;
 }
 
-enum status visibility_build(const struct cells *cells, const int32_t *cell_side,
-                             const struct point_grid *grid, struct visibility *visibility,
-                             struct error *error)
+enum status visibility_build(const struct cells *cells, const double *radius, enum visibility_rule rule,
+                             const int32_t *cell_side, struct visibility *visibility, struct error *error)
 {
     FREED_BY(index_list_free) struct index_list near = {0};
     int corners = cells->dim + 1;
-    RETURN_IF_ERROR(visibility_build_cells(cells, visibility, error));
-    visibility->grid = grid;
+    if (rule == VISIBILITY_CELLS && cells->count > 0) {
+        RETURN_IF_ERROR(visibility_build_cells(cells, visibility, error));
+    } else {
+        *visibility = (struct visibility){.cells = *cells};
+    }
+    RETURN_IF_ERROR(
+        point_grid_build(&visibility->grid, cells->dim, cells->node_count, cells->x, radius, error));
+    if (visibility->across == NULL) {
+        return STATUS_OK;
+    }
     visibility->cell_side = cell_side;
     NEW_SCRATCH(int32_t, of_cell, cells->count, error);
     NEW_SCRATCH(int32_t, of_node, cells->node_count, error);
@@ -173,6 +180,7 @@ enum status visibility_build(const struct cells *cells, const int32_t *cell_side
 
 void visibility_free(struct visibility *visibility)
 {
+    point_grid_free(&visibility->grid);
     FREE_ALL(visibility->node_side, visibility->across, visibility->star_ptr, visibility->star,
              visibility->hidden_from);
     *visibility = (struct visibility){0};

@@ -18,10 +18,14 @@ enum visibility_rule { VISIBILITY_CELLS, VISIBILITY_DISTANCE, VISIBILITY_RULE_CO
 /* Names for command lines and headers: "cells", "distance". */
 extern const char *const visibility_names[VISIBILITY_RULE_COUNT];
 
-/* The cells with their sides, and the grid, are the caller's and must outlive this. */
+/* The nodes of a body with their support radii, and its cells. If cells have sides, a neighbour of a point is
+ * a node of the cells on the point's side. So shape functions have a kink at an interface, like a
+ * displacement where the stiffness jumps. Points of faces and nodes on an interface take the lowest of the
+ * sides that meet there, so that the field has a single value there. The arrays of the cells, their sides and
+ * the radii are the caller's and must outlive this. */
 struct visibility {
     struct cells cells;
-    const struct point_grid *grid;
+    struct point_grid grid;   /* of the nodes; by distance, or without cells, there is nothing else */
     const int32_t *cell_side; /* of each cell: its side of the interfaces at which sight ends; NULL: none */
     int32_t *node_side;       /* of each node: the side, -1 on an interface; NULL without interfaces */
     int32_t *across;          /* cells_across */
@@ -32,10 +36,11 @@ struct visibility {
                             directions; infinite: none does */
 };
 
-/* Errors: STATUS_INPUT for cells that share a face with more than one other; STATUS_SYSTEM (memory). */
-MUST_CHECK enum status visibility_build(const struct cells *cells, const int32_t *cell_side,
-                                        const struct point_grid *grid, struct visibility *visibility,
-                                        struct error *error);
+/* radius[node_count], m; cell_side[count], or NULL. Errors: STATUS_INPUT for cells that share a face with
+ * more than one other; STATUS_SYSTEM (memory). */
+MUST_CHECK enum status visibility_build(const struct cells *cells, const double *radius,
+                                        enum visibility_rule rule, const int32_t *cell_side,
+                                        struct visibility *visibility, struct error *error);
 /* Only `across` and the stars, for paths along edges (edge_paths.h). Errors as above. */
 MUST_CHECK enum status visibility_build_cells(const struct cells *cells, struct visibility *visibility,
                                               struct error *error);
