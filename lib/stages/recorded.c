@@ -107,18 +107,11 @@ static enum status read_mls(const struct section *section, const char *prefix, s
     return status == STATUS_OK ? status : fail(error, status, "%s: %s", section->name, own.text);
 }
 
-/* The value of an attribute, and its name for messages; false: there is none. */
-static bool find_attribute(const struct section *section, const char *key, char value[64], char what[96])
-{
-    snprintf(what, 96, "%s: %s", section->name, key);
-    return section_attribute(section, key, value, 64);
-}
-
 enum status stage_recorded(const struct stream *stream, const char *prefix, struct field_shapes *recorded,
                            struct error *error)
 {
     struct support_options *options = &recorded->support;
-    char name[64], value[64], what[96];
+    char name[64], value[64];
     int dim, choice = VISIBILITY_CELLS;
     int64_t widen = 1;
     const struct section *radius;
@@ -135,8 +128,8 @@ enum status stage_recorded(const struct stream *stream, const char *prefix, stru
     RETURN_IF_ERROR(read_mls(radius, "", &options->mls, error));
     recorded->shapes = options->mls;
     RETURN_IF_ERROR(read_mls(radius, "shape_", &recorded->shapes, error));
-    if (find_attribute(radius, "reach", value, what)) {
-        RETURN_IF_ERROR(parse_choice(value, what, visibility_names, VISIBILITY_RULE_COUNT, &choice, error));
+    if (section_attribute(radius, "reach", value, sizeof value)) {
+        RETURN_IF_ERROR(parse_choice(value, name, visibility_names, VISIBILITY_RULE_COUNT, &choice, error));
         options->visibility = (enum visibility_rule)choice;
     }
     const struct {
@@ -144,13 +137,13 @@ enum status stage_recorded(const struct stream *stream, const char *prefix, stru
         int64_t *count;
     } counts[] = {{"least", &options->least}, {"most", &options->most}, {"widen", &widen}};
     for (int i = 0; i < 3; i++) {
-        if (find_attribute(radius, counts[i].key, value, what)) {
-            RETURN_IF_ERROR(parse_integer(value, what, 0, 1000000, counts[i].count, error));
+        if (section_attribute(radius, counts[i].key, value, sizeof value)) {
+            RETURN_IF_ERROR(parse_integer(value, name, 0, 1000000, counts[i].count, error));
         }
     }
     options->widen = widen != 0;
-    if (find_attribute(radius, "bound", value, what)) {
-        RETURN_IF_ERROR(parse_double(value, what, 1.0, 1e6, &options->gradient_bound, error));
+    if (section_attribute(radius, "bound", value, sizeof value)) {
+        RETURN_IF_ERROR(parse_double(value, name, 1.0, 1e6, &options->gradient_bound, error));
     }
     return STATUS_OK;
 }

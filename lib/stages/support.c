@@ -22,49 +22,34 @@ enum status stage_radii(const struct stream *stream, const struct support_option
     return support_radii(options, node_count, spacing, radius, error);
 }
 
-/* Points of one section in these cells, their lists PREFIX.ptr, .idx, .widen, and their name in the
- * report. */
-struct listed {
-    const struct section *points;
-    struct visibility_places places;
-    const char *prefix, *called;
-};
+/* Put a section PREFIX.NAME. The stream takes the array *array, which becomes NULL, also on failure. */
+static enum status put_member(struct stream *stream, const char *prefix, const char *name,
+                              enum element_type type, int64_t rows, void *array, struct error *error)
+{
+    char full[64];
+    snprintf(full, sizeof full, "%s.%s", prefix, name);
+    return stream_put(stream, full, type, rows, 1, "", array_take(array), true, error);
+}
 
+/* Put the lists PREFIX.ptr, .idx, .widen of points in these cells, which the report calls `called`. */
 static enum status put_lists(struct stream *stream, const struct support_options *options,
-                             const struct visibility *space, const struct listed *listed,
+                             const struct visibility *space, const struct section *points,
+                             const struct visibility_places *places, const char *prefix, const char *called,
                              struct support_report *report, struct error *error)
 {
-    const struct section *points = listed->points;
-    const char *prefix = listed->prefix;
     FREED_BY(support_free) struct neighbours lists = {0};
     int64_t count = points->rows;
-    RETURN_IF_ERROR(
-        support_build(options, space, &listed->places, count, points->data, points->name, &lists, error));
+    RETURN_IF_ERROR(support_build(options, space, places, count, points->data, points->name, &lists, error));
     int64_t pairs = lists.ptr[count];
     struct list_report *told = &report->list[report->lists++];
-    *told = (struct list_report){.what = listed->called, .pairs = pairs, .lists = lists};
+    *told = (struct list_report){.what = called, .pairs = pairs, .lists = lists};
     if (lists.steep.count > 0) {
         point_text((int)points->cols, (const double *)points->data + lists.steep.point * points->cols,
                    told->steepest);
     }
-    RETURN_IF_ERROR(stream_put_member(stream, prefix, "ptr", TYPE_I8, count + 1, 1, "", &lists.ptr, error));
-    RETURN_IF_ERROR(stream_put_member(stream, prefix, "idx", TYPE_I4, pairs, 1, "", &lists.idx, error));
-    RETURN_IF_ERROR(stream_put_member(stream, prefix, "widen", TYPE_F8, count, 1, "", &lists.widen, error));
-    return STATUS_OK;
-}
-
-/* The cells of the integration points; they are searched for if there is no such section. */
-static enum status places_of_points(const struct stream *stream, struct visibility_places *places,
-                                    struct error *error)
-{
-    const struct section *section = stream_find(stream, "points.cell");
-    *places = (struct visibility_places){0};
-    if (section == NULL) {
-        return STATUS_OK;
-    }
-    RETURN_IF_ERROR(stream_view(stream, "points.cell", &section, error));
-    *places = (struct visibility_places){.cell = section->data, .points_per_row = 1};
-    return STATUS_OK;
+    RETURN_IF_ERROR(put_member(stream, prefix, "ptr", TYPE_I8, count + 1, &lists.ptr, error));
+    RETURN_IF_ERROR(put_member(stream, prefix, "idx", TYPE_I4, pairs, &lists.idx, error));
+    return put_member(stream, prefix, "widen", TYPE_F8, count, &lists.widen, error);
 }
 
 /* The cells at the points of faces, in (*ptr)[] and (*cell)[], to be freed; they are searched for if there is
@@ -94,39 +79,39 @@ static enum status stage_lists(struct stream *stream, const struct support_optio
                                struct support_report *report, struct error *error)
 {
     FREED_BY(visibility_free) struct visibility space = {0};
-    const struct section *points, *facepoints;
-    struct support_options actual = *options;
+    const struct section *points, *cell;
+    struct visibility_places places = {0};
     struct cells cells;
-    struct listed listed;
     SCRATCH int64_t *face_ptr = NULL;
     SCRATCH int32_t *face_cell = NULL;
-    *report = (struct support_report){.visibility = actual.visibility};
+    *report = (struct support_report){.visibility = options->visibility};
     RETURN_IF_ERROR(stream_cells(stream, false, &cells, error));
     RETURN_IF_ERROR(stream_view(stream, "points.x", &points, error));
-    if (actual.side != NULL) {
+    if (options->side != NULL) {
         RETURN_IF_ERROR(
-            stream_put_copy(stream, "support.side", TYPE_I4, cells.count, 1, "", actual.side, error));
+            stream_put_copy(stream, "support.side", TYPE_I4, cells.count, 1, "", options->side, error));
     }
-    RETURN_IF_ERROR(visibility_build(&cells, stream_find(stream, "support.radius")->data, actual.visibility,
-                                     actual.side, &space, error));
-    bool smoothed = points_are_smoothed(points); /* gradients come from the faces alone */
+    RETURN_IF_ERROR(visibility_build(&cells, stream_find(stream, "support.radius")->data, options->visibility,
+                                     options->side, &space, error));
+    bool smoothed = points_are_smoothed(points);                   /* gradients come from the faces alone */
+    if (!smoothed && stream_find(stream, "points.cell") != NULL) { /* else cells are searched for */
+        RETURN_IF_ERROR(stream_view(stream, "points.cell", &cell, error));
+        places = (struct visibility_places){.cell = cell->data, .points_per_row = 1};
+    }
     if (!smoothed) {
-        listed = (struct listed){.points = points, .prefix = "nbr", .called = "integration points"};
-        RETURN_IF_ERROR(places_of_points(stream, &listed.places, error));
-        RETURN_IF_ERROR(put_lists(stream, &actual, &space, &listed, report, error));
+        RETURN_IF_ERROR(
+            put_lists(stream, options, &space, points, &places, "nbr", "integration points", report, error));
     }
     if (stream_find(stream, "faces") != NULL || smoothed) {
-        RETURN_IF_ERROR(stream_view(stream, "facepoints.x", &facepoints, error));
-        listed = (struct listed){.points = facepoints, .prefix = "facepoint", .called = "points on faces"};
-        RETURN_IF_ERROR(places_of_face_points(stream, &cells, facepoints->rows, &face_ptr, &face_cell,
-                                              &listed.places, error));
-        RETURN_IF_ERROR(put_lists(stream, &actual, &space, &listed, report, error));
+        RETURN_IF_ERROR(stream_view(stream, "facepoints.x", &points, error));
+        RETURN_IF_ERROR(
+            places_of_face_points(stream, &cells, points->rows, &face_ptr, &face_cell, &places, error));
+        RETURN_IF_ERROR(put_lists(stream, options, &space, points, &places, "facepoint", "points on faces",
+                                  report, error));
     }
-    listed = (struct listed){.points = stream_find(stream, "nodes.x"),
-                             .places = {.nodes = true},
-                             .prefix = "node",
-                             .called = "nodes"};
-    return put_lists(stream, &actual, &space, &listed, report, error);
+    places = (struct visibility_places){.nodes = true};
+    return put_lists(stream, options, &space, stream_find(stream, "nodes.x"), &places, "node", "nodes",
+                     report, error);
 }
 
 enum status stage_support(struct stream *stream, const struct support_options *options,
