@@ -18,29 +18,20 @@ struct leaf {
     double vertex[12]; /* (dim + 1) * dim */
 };
 
-/* In order of the cells, within a cell in order of the subdivision. */
-struct leaves {
-    int64_t count;
-    struct leaf *leaf;
-};
-
-static void leaves_free(struct leaves *leaves)
-{
-    free(leaves->leaf);
-}
-
-/* The input of the refinement. */
+/* The refinement, and its subcells in order of the cells, within a cell in order of the subdivision. */
 struct refinement {
     const struct adaptive_options *options;
     struct visibility space;
     struct quadrature_rule rule;
     double *norm; /* |K| of each cell, by the rule on the whole cell */
+    int64_t count;
+    struct leaf *leaf; /* count */
 };
 
 static void refinement_free(struct refinement *refinement)
 {
     visibility_free(&refinement->space);
-    free(refinement->norm);
+    FREE_ALL(refinement->norm, refinement->leaf);
 }
 
 /* Number of subcells that are measured at once. It bounds the memory and does not affect the result. */
@@ -196,15 +187,15 @@ static enum status measure_batch(struct refinement *refinement, struct leaf *con
 }
 
 /* Measure the subcells that have not been measured; those of level 0 also set the norm of their cell. */
-static enum status measure_new(struct refinement *refinement, struct leaves *leaves, struct error *error)
+static enum status measure_new(struct refinement *refinement, struct error *error)
 {
     struct leaf *batch[BATCH_LEAVES];
     int64_t count = 0;
-    for (int64_t l = 0; l < leaves->count; l++) {
-        if (!leaves->leaf[l].measured) {
-            batch[count++] = &leaves->leaf[l];
+    for (int64_t l = 0; l < refinement->count; l++) {
+        if (!refinement->leaf[l].measured) {
+            batch[count++] = &refinement->leaf[l];
         }
-        if (count == BATCH_LEAVES || (count > 0 && l == leaves->count - 1)) {
+        if (count == BATCH_LEAVES || (count > 0 && l == refinement->count - 1)) {
             RETURN_IF_ERROR(measure_batch(refinement, batch, count, error));
             count = 0;
         }
@@ -264,15 +255,15 @@ static enum status mark_cell(const struct adaptive_options *options, struct leaf
 }
 
 /* Replace the marked subcells by their children. */
-static enum status split(int dim, int64_t marked, struct leaves *leaves, struct error *error)
+static enum status split(struct refinement *refinement, int64_t marked, struct error *error)
 {
-    int children = children_of(dim);
-    int64_t count = leaves->count + marked * (children - 1);
+    int dim = refinement->space.cells.dim, children = children_of(dim);
+    int64_t count = refinement->count + marked * (children - 1);
     struct leaf *next;
     RETURN_IF_ERROR(NEW_ARRAY(&next, count, error));
     struct leaf *at = next;
-    for (int64_t l = 0; l < leaves->count; l++) {
-        const struct leaf *leaf = &leaves->leaf[l];
+    for (int64_t l = 0; l < refinement->count; l++) {
+        const struct leaf *leaf = &refinement->leaf[l];
         if (!leaf->split) {
             *at++ = *leaf;
             continue;
@@ -282,20 +273,20 @@ static enum status split(int dim, int64_t marked, struct leaves *leaves, struct 
             place_child(dim, leaf->vertex, child, at->vertex);
         }
     }
-    free(leaves->leaf);
-    leaves->leaf = next;
-    leaves->count = count;
+    free(refinement->leaf);
+    refinement->leaf = next;
+    refinement->count = count;
     return STATUS_OK;
 }
 
 /* One subcell for each cell. */
-static enum status start(const struct cells *cells, struct leaves *leaves, struct error *error)
+static enum status start(const struct cells *cells, struct refinement *refinement, struct error *error)
 {
     int dim = cells->dim, vertices = dim + 1;
-    RETURN_IF_ERROR(NEW_ARRAY(&leaves->leaf, cells->count, error));
-    leaves->count = cells->count;
+    RETURN_IF_ERROR(NEW_ARRAY(&refinement->leaf, cells->count, error));
+    refinement->count = cells->count;
     for (int64_t c = 0; c < cells->count; c++) {
-        struct leaf *leaf = &leaves->leaf[c];
+        struct leaf *leaf = &refinement->leaf[c];
         leaf->cell = (int32_t)c;
         for (int i = 0; i < vertices * dim; i++) {
             leaf->vertex[i] = cells->x[(int64_t)cells->node[c * vertices + i / dim] * dim + i % dim];
@@ -305,17 +296,17 @@ static enum status start(const struct cells *cells, struct leaves *leaves, struc
 }
 
 /* Mark the subcells to be split in all cells. */
-static enum status mark(const struct refinement *refinement, const struct leaves *leaves, int64_t *marked,
-                        int64_t *unresolved, struct error *error)
+static enum status mark(const struct refinement *refinement, int64_t *marked, int64_t *unresolved,
+                        struct error *error)
 {
     *marked = *unresolved = 0;
-    for (int64_t begin = 0, end = 0; begin < leaves->count; begin = end) {
+    for (int64_t begin = 0, end = 0; begin < refinement->count; begin = end) {
         bool stuck;
-        int32_t cell = leaves->leaf[begin].cell;
-        while (end < leaves->count && leaves->leaf[end].cell == cell) {
+        int32_t cell = refinement->leaf[begin].cell;
+        while (end < refinement->count && refinement->leaf[end].cell == cell) {
             end++;
         }
-        RETURN_IF_ERROR(mark_cell(refinement->options, leaves->leaf + begin, end - begin,
+        RETURN_IF_ERROR(mark_cell(refinement->options, refinement->leaf + begin, end - begin,
                                   refinement->norm[cell], marked, &stuck, error));
         *unresolved += stuck;
     }
@@ -323,12 +314,12 @@ static enum status mark(const struct refinement *refinement, const struct leaves
 }
 
 /* Place the rule's points in all subcells. */
-static enum status place_points(const struct refinement *refinement, const struct leaves *leaves,
-                                struct adaptive_points *points, struct error *error)
+static enum status place_points(const struct refinement *refinement, struct adaptive_points *points,
+                                struct error *error)
 {
     const struct quadrature_rule *rule = &refinement->rule;
     int dim = refinement->space.cells.dim;
-    points->count = leaves->count * rule->points;
+    points->count = refinement->count * rule->points;
     if (points->count > INT32_MAX) {
         return fail(error, STATUS_INPUT,
                     "%lld adaptive points: more than 2^31 - 1: a larger tolerance or fewer "
@@ -338,8 +329,8 @@ static enum status place_points(const struct refinement *refinement, const struc
     RETURN_IF_ERROR(NEW_ARRAY(&points->x, points->count * dim, error));
     RETURN_IF_ERROR(NEW_ARRAY(&points->weight, points->count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&points->cell, points->count, error));
-    for (int64_t l = 0; l < leaves->count; l++) {
-        const struct leaf *leaf = &leaves->leaf[l];
+    for (int64_t l = 0; l < refinement->count; l++) {
+        const struct leaf *leaf = &refinement->leaf[l];
         int64_t first = l * rule->points;
         double volume = ldexp(cell_volume(&refinement->space.cells, leaf->cell), -dim * leaf->level);
         quadrature_positions(rule, dim, leaf->vertex, in_order, points->x + first * dim);
@@ -355,20 +346,19 @@ enum status adaptive_points_build(const struct adaptive_options *options, const 
                                   const double *radius, struct adaptive_points *points, struct error *error)
 {
     FREED_BY(refinement_free) struct refinement refinement = {.options = options};
-    FREED_BY(leaves_free) struct leaves leaves = {0};
     int64_t marked;
     *points = (struct adaptive_points){0};
     RETURN_IF_ERROR(quadrature_cell_rule(cells->dim, options->rule_points, &refinement.rule, error));
     RETURN_IF_ERROR(visibility_build(cells, radius, options->support.visibility, options->support.side,
                                      &refinement.space, error));
     RETURN_IF_ERROR(NEW_ARRAY(&refinement.norm, cells->count, error));
-    RETURN_IF_ERROR(start(cells, &leaves, error));
+    RETURN_IF_ERROR(start(cells, &refinement, error));
     do {
-        RETURN_IF_ERROR(measure_new(&refinement, &leaves, error));
-        RETURN_IF_ERROR(mark(&refinement, &leaves, &marked, &points->unresolved, error));
-        RETURN_IF_ERROR(split(cells->dim, marked, &leaves, error));
+        RETURN_IF_ERROR(measure_new(&refinement, error));
+        RETURN_IF_ERROR(mark(&refinement, &marked, &points->unresolved, error));
+        RETURN_IF_ERROR(split(&refinement, marked, error));
     } while (marked > 0);
-    return place_points(&refinement, &leaves, points, error);
+    return place_points(&refinement, points, error);
 }
 
 void adaptive_points_free(struct adaptive_points *points)

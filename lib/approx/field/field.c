@@ -133,35 +133,16 @@ static void interpolate_in_cell(const struct cells *cells, int64_t cell, int64_t
     }
 }
 
-/* result[count * cols] at x[count * dim], in the cells that contain the points `within`, or are nearest to
- * them; that of the nearest cell is continued. */
-static enum status interpolate(const struct cells *cells, int64_t cols, const double *values, int64_t count,
-                               const double *within, const double *x, double *result, struct error *error)
-{
-    if (cells->count == 0) {
-        return fail(error, STATUS_INPUT, "no cells, within which the field is interpolated");
-    }
-    NEW_SCRATCH(double, spacing, cells->node_count, error);
-    NEW_SCRATCH(int64_t, cell, count, error);
-    RETURN_IF_ERROR(field_spacing(cells, spacing, error));
-    RETURN_IF_ERROR(find_nearest(cells, spacing, FIELD_MARGIN, count, within, cell, error));
-    for (int64_t p = 0; p < count; p++) {
-        if (cell[p] < 0) {
-            char place[96];
-            point_text(cells->dim, x + p * cells->dim, place);
-            return fail(error, STATUS_INPUT, "node %lld at %s is far from all its cells", (long long)p,
-                        place);
-        }
-        interpolate_in_cell(cells, cell[p], cols, values, x + p * cells->dim, result + p * cols);
-    }
-    return STATUS_OK;
-}
-
 enum status field_carry(const struct cells *from, int64_t cols, const double *values, const struct cells *to,
                         double *result, struct error *error)
 {
     int dim = to->dim;
+    if (from->count == 0) {
+        return fail(error, STATUS_INPUT, "no cells, within which the field is interpolated");
+    }
     NEW_SCRATCH(double, within, to->node_count * dim, error);
+    NEW_SCRATCH(double, spacing, from->node_count, error);
+    NEW_SCRATCH(int64_t, cell, to->node_count, error);
     memcpy(within, to->x, (size_t)(to->node_count * dim) * sizeof *within);
     for (int64_t i = to->count * (dim + 1) - 1; i >= 0; i--) { /* towards the middle of its first cell */
         double middle[3];
@@ -169,7 +150,17 @@ enum status field_carry(const struct cells *from, int64_t cols, const double *va
         cell_centroid(to, i / (dim + 1), middle);
         vector_between(dim, to->x + node * dim, middle, into_cell, within + node * dim);
     }
-    return interpolate(from, cols, values, to->node_count, within, to->x, result, error);
+    RETURN_IF_ERROR(field_spacing(from, spacing, error));
+    RETURN_IF_ERROR(find_nearest(from, spacing, FIELD_MARGIN, to->node_count, within, cell, error));
+    for (int64_t n = 0; n < to->node_count; n++) {
+        const double *x = to->x + n * dim;
+        if (cell[n] < 0) {
+            return fail(error, STATUS_INPUT, "node %lld at %s is far from all its cells", (long long)n,
+                        POINT_TEXT(dim, x));
+        }
+        interpolate_in_cell(from, cell[n], cols, values, x, result + n * cols);
+    }
+    return STATUS_OK;
 }
 
 /* x[FIELD_TURNING_POINTS * dim]: the points within a cell whose barycentric coordinates are sixth[] / 6. */

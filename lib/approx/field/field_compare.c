@@ -46,14 +46,6 @@ static enum status match_nodes(int dim, int64_t a_count, const double *a, int64_
     return STATUS_OK;
 }
 
-/* difference[i] = |a_i - b_i|, Euclidean over the columns; not finite wherever a value is not. */
-static void differences(int64_t count, int64_t cols, const double *a, const double *b, double *difference)
-{
-    for (int64_t i = 0; i < count; i++) {
-        difference[i] = vector_distance((int)cols, a + i * cols, b + i * cols);
-    }
-}
-
 double field_largest(int64_t count, int64_t cols, const double *field)
 {
     double largest2 = 0.0;
@@ -200,7 +192,9 @@ enum status field_compare(const struct nodal_field *a, const struct nodal_field 
         RETURN_IF_ERROR(status == STATUS_VERDICT ? STATUS_INPUT
                                                  : status); /* not comparable is not "differs" */
     }
-    differences(count, cols, a->values, reference, comparison->difference);
+    for (int64_t i = 0; i < count; i++) { /* not finite wherever a value is not */
+        comparison->difference[i] = vector_distance((int)cols, a->values + i * cols, reference + i * cols);
+    }
     return STATUS_OK;
 }
 

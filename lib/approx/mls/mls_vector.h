@@ -159,13 +159,6 @@ KERNEL_INLINE void store_row(const struct mls_point *point, int row, int64_t j, 
     memcpy(point->row + row * point->stride + j, v, sizeof *v);
 }
 
-KERNEL_INLINE void load_vector(int dim, const struct mls_point *point, int row, int64_t j, lanes *v)
-{
-    for (int a = 0; a < dim; a++) {
-        load_row(point, row + a, j, &v[a]);
-    }
-}
-
 /* Differences of coordinates, and radii, in rows; the largest radius. */
 KERNEL_INLINE void gather(const struct mls_support *support, int dim, struct mls_point *point)
 {
@@ -228,7 +221,9 @@ KERNEL_INLINE void weigh(enum weight_function function, double widen, int dim, s
 KERNEL_INLINE void load_monomials(int dim, int m, const struct mls_point *point, int64_t j, lanes *xi,
                                   lanes *p)
 {
-    load_vector(dim, point, ROW_XI, j, xi);
+    for (int a = 0; a < dim; a++) {
+        load_row(point, ROW_XI + a, j, &xi[a]);
+    }
     monomials(dim, m, xi, p);
 }
 
