@@ -86,15 +86,15 @@ static void report_labels(const struct tool *tool, const struct label_image *ima
     TOOL_SCRATCH(tool, double, volume, image->labels.count);
     TOOL_SCRATCH(tool, double, present, image->labels.count); /* without what --largest left out */
     TOOL_SCRATCH(tool, int64_t, lost, image->labels.count);
-    TOOL_TRY(tool, label_cells_lost(&image->labels, image->keep, result, lost, &error));
+    TOOL_TRY(tool, label_cells_lost(&image->labels, image->table.kept, result, lost, &error));
     for (int64_t c = 0; c < cells->count; c++) {
         volume[result->label[c]] += cell_volume(cells, c);
     }
     for (int64_t v = 0; v < image->labels.size[0] * image->labels.size[1] * image->labels.size[2]; v++) {
-        present[image->voxel[v]] += image->voxel_volume;
+        present[image->labels.label[v]] += image->voxel_volume;
     }
     for (int32_t l = 0; l < image->labels.count; l++) {
-        if (!image->keep[l] && lost[l] > 0) {
+        if (!image->table.kept[l] && lost[l] > 0) {
             tool_note(tool,
                       "%s: %.3g %s of gaps and cavities narrower than the spacing are filled: see --fine",
                       image->table.names.name[l], shown(dim, (double)lost[l] * image->voxel_volume), unit);
@@ -105,7 +105,7 @@ static void report_labels(const struct tool *tool, const struct label_image *ima
                after = shown(dim, volume[l]);
         double missing = shown(dim, (double)lost[l] * image->voxel_volume);
         const char *name = image->table.names.name[l];
-        if (!image->keep[l]) {
+        if (!image->table.kept[l]) {
             if (verbose) {
                 tool_note(tool, "%s: %.4g %s of voxels, left out", name, all, unit);
             }
@@ -269,11 +269,11 @@ int main(int argc, char *argv[])
     if (tool_given(&tool, "surface")) {
         label_surface_parse(&tool, &image, &surface);
         for (int32_t l = 0; l < image.labels.count; l++) {
-            image.keep[l] = l == surface.inner;
+            image.table.kept[l] = l == surface.inner;
         }
     }
     struct label_cells_options label_cells_options = {
-        .spacing = spacing, .keep = image.keep, .largest = tool_given(&tool, "largest")};
+        .spacing = spacing, .keep = image.table.kept, .largest = tool_given(&tool, "largest")};
     SCRATCH bool *fine = NULL;
     if (tool_given(&tool, "fine")) {
         fine =
