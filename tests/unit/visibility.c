@@ -1,7 +1,7 @@
 /* What supports reach through the cells: convex bodies, gaps, touching bodies, corners and fissures. */
 #include "approx_fixture.h"
 
-#include "approx/visibility/edge_paths.h"
+#include "approx/visibility/visibility.h"
 #include "base/vector.h"
 
 /* A body of unit squares or cubes, each of 2 triangles or 6 tetrahedra. Nodes of the same place and sheet are

@@ -97,11 +97,6 @@ MUST_CHECK enum status star_make(struct label_body *body, struct error *error);
  * and find the boundary. */
 MUST_CHECK enum status label_cells_keep(struct label_body *body, struct error *error);
 
-/* Set body->volume: that of the voxels that hang together with the cells of a label, and of those of others
- * in them that do not hang together with theirs: specks and cavities that the lattice does not see. Voxels
- * nearer to bodies that are left out count for these, and become outside if options->largest. */
-MUST_CHECK enum status label_cells_volume(struct label_body *body, struct error *error);
-
 /* Drop the cells that are not wanted, and nodes without cells. */
 MUST_CHECK enum status label_cells_drop(const bool *wanted, struct label_cells *mesh, struct error *error);
 
@@ -150,6 +145,3 @@ double node_place(const struct label_body *body, int64_t node, bool meeting, dou
 
 /* Gradient of a cell's volume with respect to the position of its corner k. */
 void label_cells_gradient(const struct label_cells *mesh, int64_t cell, int k, double gradient[3]);
-
-/* Move nodes where labels meet onto the interfaces; improve poor cells; and correct the volumes of labels. */
-MUST_CHECK enum status label_cells_improve(struct label_body *body, struct error *error);
