@@ -7,45 +7,34 @@
 #include <math.h>
 #include <string.h>
 
-/* q = 2 r / R with r = A / s, R = a b c / (4 A), s half the perimeter. */
-static double triangle_quality(double area, const double *const x[3])
-{
-    double a = vector_distance(2, x[1], x[2]);
-    double b = vector_distance(2, x[2], x[0]);
-    double c = vector_distance(2, x[0], x[1]);
-    return area * fabs(area) * 16 / ((a + b + c) * a * b * c);
-}
-
-/* q = 3 r / R with r = 3 V / S, R = sqrt(p (p - a)(p - b)(p - c)) / (6 V); a, b, c are the products of
- * opposite edges, and p is half their sum. */
-static double tetrahedron_quality(double volume, const double *const x[4])
-{
-    double a = vector_distance(3, x[0], x[1]) * vector_distance(3, x[2], x[3]);
-    double b = vector_distance(3, x[0], x[2]) * vector_distance(3, x[1], x[3]);
-    double c = vector_distance(3, x[0], x[3]) * vector_distance(3, x[1], x[2]);
-    double p = (a + b + c) / 2;
-    double surface = 0;
-    for (int i = 0; i < 4; i++) {
-        const double *u = x[(i + 1) % 4];
-        const double *v = x[(i + 2) % 4];
-        const double *w = x[(i + 3) % 4];
-        double s[3], t[3], normal[3];
-        vector_subtract(3, v, u, s);
-        vector_subtract(3, w, u, t);
-        vector_cross(s, t, normal);
-        surface += vector_length(3, normal) / 2;
-    }
-    double product = p * (p - a) * (p - b) * (p - c);
-    return 54 * volume * fabs(volume) / (surface * sqrt(fmax(product, 0)));
-}
-
+/* With S the sum of the sizes of the faces: in 2D q = 2 r / R, r = 2 A / S, R = a b c / (4 A); in 3D q = 3 r
+ * / R, r = 3 V / S, R = sqrt(p (p - a)(p - b)(p - c)) / (6 V), where a, b, c are the products of opposite
+ * edges, and p is half their sum. */
 double cell_quality(const struct cells *cells, int64_t cell)
 {
     int dim = cells->dim;
+    double volume = cell_volume(cells, cell), face[4], sum = 0, product = 1, edges[3], p = 0;
     const double *x[4];
     cell_corners(cells, cell, x);
-    double volume = cell_volume(cells, cell);
-    double quality = dim == 2 ? triangle_quality(volume, x) : tetrahedron_quality(volume, x);
+    for (int k = 0; k <= dim; k++) {
+        int32_t node[3];
+        double area[3];
+        cell_face(cells, cell, k, node);
+        face_area_vector(dim, cells->x, node, area);
+        face[k] = vector_length(dim, area);
+        sum += face[k];
+    }
+    for (int k = 0; k < 3; k++) {
+        edges[k] = dim == 2 ? face[k]
+                            : vector_distance(3, x[0], x[k + 1]) *
+                                  vector_distance(3, x[(k + 1) % 3 + 1], x[(k + 2) % 3 + 1]);
+        p += edges[k] / 2;
+    }
+    for (int k = 0; k < 3; k++) {
+        product *= dim == 2 ? edges[k] : p - edges[k];
+    }
+    double quality = dim == 2 ? volume * fabs(volume) * 16 / (sum * product)
+                              : 54 * volume * fabs(volume) / (sum * sqrt(fmax(p * product, 0)));
     return isfinite(quality) ? quality : 0;
 }
 

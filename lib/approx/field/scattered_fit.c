@@ -51,14 +51,10 @@ static bool is_usable(const void *paths, int32_t row)
     return ((const struct edge_paths *)paths)->verdict[row] != PATH_NONE;
 }
 
-/* The nearest points that are connected or not yet checked, with distances in the table's unit. */
-static enum status find_nearest(const struct scattered_fit *fit, const double *x,
+/* The nearest points that are connected or not yet checked; in the table's unit. */
+static enum status find_nearest(const struct scattered_fit *fit, const double *at,
                                 struct nearest_nodes *nearest, struct error *error)
 {
-    double at[3] = {0.0, 0.0, 0.0};
-    for (int a = 0; a < fit->dim; a++) {
-        at[a] = x[a] / fit->unit;
-    }
     return fail_in(error,
                    point_grid_nearest(&fit->grid, at, fit->dim == 2 ? 12 : MOST_NEIGHBOURS,
                                       fit->paths != NULL ? is_usable : NULL, fit->paths, nearest, error),
@@ -71,22 +67,16 @@ static enum status find_nearest(const struct scattered_fit *fit, const double *x
 static enum status spacing_around(const struct scattered_fit *fit, int64_t row, double *spacing,
                                   struct error *error)
 {
-    double x[3] = {0.0, 0.0, 0.0};
     struct nearest_nodes nearest;
-    for (int a = 0; a < fit->dim; a++) {
-        x[a] = fit->row[row * fit->row_size + a] * fit->unit;
-    }
-    enum status status = find_nearest(fit, x, &nearest, error);
-    if (status == STATUS_OK) {
-        double radius = nearest.distance[nearest.count - 1], count = (double)nearest.count;
-        *spacing = radius * (fit->dim == 2 ? sqrt(M_PI / count) : cbrt(4.0 / 3.0 * M_PI / count));
-    }
-    return status;
+    RETURN_IF_ERROR(find_nearest(fit, fit->x + row * fit->dim, &nearest, error));
+    double radius = nearest.distance[nearest.count - 1], count = (double)nearest.count;
+    *spacing = radius * (fit->dim == 2 ? sqrt(M_PI / count) : cbrt(4.0 / 3.0 * M_PI / count));
+    return STATUS_OK;
 }
 
 /* The nearest connected points: the nearest ones are checked, and unconnected ones replaced, until all are
  * connected. */
-static enum status find_reached(const struct scattered_fit *fit, int32_t from, const double *x,
+static enum status find_reached(const struct scattered_fit *fit, int32_t from, const double *at,
                                 struct nearest_nodes *nearest, struct error *error)
 {
     if (fit->paths != NULL) {
@@ -94,7 +84,7 @@ static enum status find_reached(const struct scattered_fit *fit, int32_t from, c
     }
     for (bool settled = false; !settled;) {
         settled = true;
-        RETURN_IF_ERROR(find_nearest(fit, x, nearest, error));
+        RETURN_IF_ERROR(find_nearest(fit, at, nearest, error));
         for (int64_t i = 0; fit->paths != NULL && i < nearest->count; i++) {
             bool reached;
             RETURN_IF_ERROR(edge_paths_reach(fit->paths, nearest->node[i], &reached, error));
@@ -180,7 +170,7 @@ static void part_take_rest(const struct part *by, size_t k, const double *linear
 /* The weighted basis at the neighbours, in coordinates from their weighted mean: the linear columns, and the
  * quadratic ones. at_x: the basis at x. With coordinates from the mean, the combinations that the points do
  * not determine are those that vanish on them. */
-static void fill_columns(const struct scattered_fit *fit, const double *x,
+static void fill_columns(const struct scattered_fit *fit, const double *at,
                          const struct nearest_nodes *nearest, double *root, struct part *linear,
                          struct part *quadratic, double *at_x)
 {
@@ -196,7 +186,7 @@ static void fill_columns(const struct scattered_fit *fit, const double *x,
     }
     for (int a = 0; a < dim; a++) {
         mean[a] /= total;
-        xi[a] = (x[a] / fit->unit - mean[a]) / radius;
+        xi[a] = (at[a] - mean[a]) / radius;
     }
     monomials(dim, xi, at_x);
     for (size_t i = 0; i < (size_t)nearest->count; i++) {
@@ -215,7 +205,7 @@ static void fill_columns(const struct scattered_fit *fit, const double *x,
 
 /* The values at x. The quadratic monomials fit the remainder of the linear fit, so that linear fields are
  * exact however few the points are. */
-static enum status fit_values(const struct scattered_fit *fit, const double *x,
+static enum status fit_values(const struct scattered_fit *fit, const double *at,
                               const struct nearest_nodes *nearest, double *values, struct error *error)
 {
     size_t dim = (size_t)fit->dim, count = (size_t)nearest->count;
@@ -223,7 +213,7 @@ static enum status fit_values(const struct scattered_fit *fit, const double *x,
     struct part quadratic = {.columns = dim * (dim + 1) / 2};
     double root[MOST_NEIGHBOURS], b[MOST_NEIGHBOURS] = {0.0}, at_x[MOST_MONOMIALS], fitted[MOST_COLUMNS];
     quadratic.rows = count > quadratic.columns ? count : quadratic.columns;
-    fill_columns(fit, x, nearest, root, &linear, &quadratic, at_x);
+    fill_columns(fit, at, nearest, root, &linear, &quadratic, at_x);
     RETURN_IF_ERROR(part_decompose(&linear, 0.0, error));
     for (size_t k = 0; k < quadratic.columns; k++) {
         part_take_rest(&linear, k, at_x, &quadratic, &at_x[1 + dim + k]);
@@ -250,7 +240,11 @@ enum status scattered_fit_evaluate(const struct scattered_fit *fit, int32_t from
                                    double *values, double *distance, double *spacing, struct error *error)
 {
     struct nearest_nodes nearest = {0};
-    RETURN_IF_ERROR(find_reached(fit, from, x, &nearest, error));
+    double at[3];
+    for (int a = 0; a < fit->dim; a++) {
+        at[a] = x[a] / fit->unit;
+    }
+    RETURN_IF_ERROR(find_reached(fit, from, at, &nearest, error));
     int64_t last = nearest.count - 1;
     *distance = nearest.distance[0] * fit->unit;
     RETURN_IF_ERROR(spacing_around(fit, nearest.node[0], spacing, error));
@@ -258,7 +252,7 @@ enum status scattered_fit_evaluate(const struct scattered_fit *fit, int32_t from
     memcpy(values, fit->row + nearest.node[0] * fit->row_size + fit->dim,
            (size_t)fit->value_count * sizeof *values);
     if (nearest.count > 1 && nearest.distance[last] > 0.0) {
-        RETURN_IF_ERROR(fit_values(fit, x, &nearest, values, error));
+        RETURN_IF_ERROR(fit_values(fit, at, &nearest, values, error));
     }
     for (int v = 0; v < fit->value_count; v++) {
         values[v] *= fit->unit;
