@@ -127,11 +127,9 @@ static enum status drop_outside(const struct nodal_field *a, const struct nodal_
     comparison->outside = comparison->count - kept;
     comparison->count = kept;
     if (comparison->outside > 0 && !skip) {
-        char place[96];
-        point_text(dim, a->cells.x + first * dim, place);
-        return fail(error, STATUS_INPUT,
-                    "%lld nodes of A lie outside of B's cloud, the first is row %lld at %s",
-                    (long long)comparison->outside, (long long)first, place);
+        return fail(
+            error, STATUS_INPUT, "%lld nodes of A lie outside of B's cloud, the first is row %lld at %s",
+            (long long)comparison->outside, (long long)first, POINT_TEXT(dim, a->cells.x + first * dim));
     }
     return STATUS_OK;
 }

@@ -210,9 +210,8 @@ static void worker_free(struct worker *worker)
 static enum status fail_support(const struct search *search, int64_t row, const int32_t *index, int64_t count,
                                 enum mls_verdict verdict, struct error *error)
 {
-    char place[96], stray[96] = "";
+    char stray[96] = "";
     const double *radius = search->grid->radius;
-    point_text(search->grid->dim, search->x + row * search->grid->dim, place);
     if (count > 0) {
         int32_t widest = index[0];
         for (int64_t i = 1; i < count; i++) {
@@ -223,8 +222,9 @@ static enum status fail_support(const struct search *search, int64_t row, const 
     }
     return fail(error, STATUS_VERDICT,
                 "%s: row %lld at %s: no good support even at %g times the radius (%lld nodes within%s%s): %s",
-                search->what, (long long)row, place, SUPPORT_WIDEN_LIMIT, (long long)count,
-                search->visibility != NULL ? " reach through the cells" : "", stray,
+                search->what, (long long)row,
+                POINT_TEXT(search->grid->dim, search->x + row * search->grid->dim), SUPPORT_WIDEN_LIMIT,
+                (long long)count, search->visibility != NULL ? " reach through the cells" : "", stray,
                 verdict == MLS_TOO_FEW
                     ? "too few"
                     : "they lie in a plane or on a line (for mls2: on a quadric), or nearly so");
