@@ -3,7 +3,7 @@
 #include "approx/cells/parts.h"
 #include "approx/cells/quality.h"
 #include "approx/support/support.h"
-#include "approx/points/hanging.h"
+#include "approx/points/select.h"
 #include "base/memory.h"
 
 #include <stdio.h>

@@ -81,16 +81,6 @@ static enum status node_sizes(const struct cells *cells, const double *squared, 
     return STATUS_OK;
 }
 
-/* Limit sizes on the boundary to the present ones: the estimate does not include the error of the boundary's
- * shape. */
-static void keep_boundary(const struct faces *faces, const double *spacing, double *size)
-{
-    for (int64_t i = 0; i < faces->boundary_count * faces->dim; i++) {
-        int32_t n = faces->node[i];
-        size[n] = fmin(size[n], spacing[n]);
-    }
-}
-
 /* normal[node_count * dim]: sum of the area vectors of the facets at each node of the boundary. */
 static void boundary_normals(const struct cells *cells, const struct faces *faces, double *normal)
 {
@@ -216,7 +206,11 @@ enum status size_field_build(const struct cells *cells, const double *squared,
     RETURN_IF_ERROR(node_sizes(cells, squared, spacing, request, field->size, error));
     boundary_normals(cells, &field->boundary, normal);
     move_outward(cells, normal, spacing, field->outer);
-    keep_boundary(&field->boundary, spacing, field->size);
+    /* On the boundary at most the present ones: the estimate does not include the error of its shape. */
+    for (int64_t i = 0; i < field->boundary.boundary_count * cells->dim; i++) {
+        int32_t n = field->boundary.node[i];
+        field->size[n] = fmin(field->size[n], spacing[n]);
+    }
     if (request->sag > 0.0) {
         boundary_angles(cells, &field->boundary, normal, angle);
         limit_sag(cells, &field->boundary, angle, request->sag, field->size);

@@ -68,13 +68,6 @@ static enum status row_finish(struct dense_row *row, double whole, int64_t part,
     return STATUS_OK;
 }
 
-/* The weight of a quadrature point in the value at a vertex of the linear function through the points of a
- * facet; the point has the barycentric coordinate `near` of the vertex. */
-static double extrapolated(int dim, double near)
-{
-    return (dim + 1) * near - 1.0;
-}
-
 /* Add one corner's facet to the part: its shape functions, area, normal, and samples. */
 static enum status add_corner(const struct face_table *table, const struct facet_set *set,
                               const int64_t *face_of, const struct corner *corner, int64_t part,
@@ -93,7 +86,8 @@ static enum status add_corner(const struct face_table *table, const struct facet
     quadrature_positions(&rule, dim, table->x, face, x);
     for (int g = 0; g < rule.points; g++) {
         double near = rule.barycentric[g * dim + vertex], weight = rule.weight[g] * size * near;
-        double in_row = at_corner ? size / dim * extrapolated(dim, near) : weight;
+        /* At a corner: as of the linear function through the points. */
+        double in_row = at_corner ? size / dim * ((dim + 1) * near - 1.0) : weight;
         int64_t point = face_of[corner->facet] * table->per_face + g;
         for (int64_t i = table->lists->ptr[point]; row != NULL && i < table->lists->ptr[point + 1]; i++) {
             RETURN_IF_ERROR(row_add(row, table->lists->idx[i], in_row * table->phi[i], error));
