@@ -40,7 +40,6 @@ static const char usage[] =
 #include "stages/views.h"
 
 #include "approx/error/field_error.h"
-#include "approx/error/size_field.h"
 
 /* Errors of the cells of a field, from its recovered gradient. */
 static enum status recover(const struct stream *stream, const char *field, struct cells *cells,

@@ -74,3 +74,11 @@ MUST_CHECK enum status cells_across(const struct cells *cells, int32_t *across, 
 
 /* spacing[node_count]: mean length of the cell edges at each node; 0 at nodes of no cell. */
 MUST_CHECK enum status cells_node_spacing(const struct cells *cells, double *spacing, struct error *error);
+
+/* owner[size[0] * size[1] * size[2]], first axis fastest: the lowest cell that contains the grid point, or
+ * -1. cells->x are in units of the grid, whose points have integer coordinates from 0; size[2] = 1 in 2D.
+ * Only cells whose determinant has the sign `sign` (1 or -1) count: -1 if the map to the grid mirrors; the
+ * others are inverted. *doubly: number of grid points inside more than one cell, faces excepted. Threaded;
+ * the result does not depend on the number of threads. */
+void raster_cells(const struct cells *cells, int sign, const int64_t size[3], int32_t *owner,
+                  int64_t *doubly);

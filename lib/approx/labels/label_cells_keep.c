@@ -1,5 +1,4 @@
 #include "approx/cells/cells.h"
-#include "approx/cells/raster.h"
 #include "approx/labels/label_cells_private.h"
 #include "base/lists.h"
 #include "base/memory.h"
