@@ -20,14 +20,6 @@ double field_error_order(double fine, double coarse, double ratio)
     return fmin(fmax(order, FIELD_ERROR_LEAST_ORDER), FIELD_ERROR_MOST_ORDER);
 }
 
-double field_error_ratio(const struct cells *fine, const struct cells *coarse)
-{
-    bool both = fine->count > 0 && coarse->count > 0;
-    double f = (double)(both ? fine->count : fine->node_count);
-    double c = (double)(both ? coarse->count : coarse->node_count);
-    return pow(f / c, 1.0 / fine->dim);
-}
-
 double field_error_mean(const struct cells *cells, const double *value)
 {
     double sum = 0.0, volume = 0.0;

@@ -31,9 +31,6 @@ double field_error_share(double ratio, double order);
  * finite. */
 double field_error_order(double fine, double coarse, double ratio);
 
-/* Ratio of the numbers of cells per direction of two meshes of one body; of nodes, where one has no cells. */
-double field_error_ratio(const struct cells *fine, const struct cells *coarse);
-
 /* Mean over the body of a value at its nodes, linear in the cells; cells with a node whose value is NaN are
  * left out. The average over the nodes of a graded cloud would be dominated by the regions with many nodes.
  * NaN where no cell is left. */
