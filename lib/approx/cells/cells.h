@@ -84,7 +84,7 @@ void raster_cells(const struct cells *cells, int sign, const int64_t size[3], in
                   int64_t *doubly);
 
 /* order[count]: the indices of x[count * dim] in the order of a Morton (Z) curve, in which what is used in
- * succession is close together in memory; equal points in the order
- * given. With group[count], unless NULL, lower groups come first. */
+ * succession is close together in memory; equal points in the order given. With group[count], unless NULL,
+ * lower groups come first. */
 MUST_CHECK enum status renumber_morton(int dim, int64_t count, const double *x, const int32_t *group,
                                        int64_t *order, struct error *error);
