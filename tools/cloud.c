@@ -46,6 +46,8 @@ static const char usage[] =
 #include "cell_report.h"
 #include "tool.h"
 
+#include <math.h>
+
 static void check_kind(const struct tool *tool, const char *option, bool applies)
 {
     if (tool_given(tool, option) && !applies) {
@@ -90,13 +92,18 @@ static struct cloud_options parse(const struct tool *tool)
     return cloud;
 }
 
-static void put_field(const struct tool *tool, struct stream *stream, const struct cloud *cloud,
-                      enum cloud_function function)
+/* Put the function with this number in the list of names as u. */
+static void put_field(const struct tool *tool, struct stream *stream, const struct cloud *cloud, int function)
 {
     double *values;
     TOOL_TRY(tool, NEW_ARRAY(&values, cloud->node_count, &error));
     for (int64_t n = 0; n < cloud->node_count; n++) {
-        values[n] = cloud_function_value(function, cloud->dim, &cloud->x[n * cloud->dim]);
+        const double *at = &cloud->x[n * cloud->dim];
+        double x = at[0], y = at[1], z = cloud->dim == 3 ? at[2] : 0, square = x * x + y * y + z * z;
+        double linear = 1 + 2 * x + 3 * y + 4 * z;
+        values[n] = function == 0   ? (1 - square) * exp(-square / 2)
+                    : function == 1 ? linear
+                                    : linear + x * x - 2 * x * y + 3 * y * y + x * z - y * z + 2 * z * z;
     }
     tool_put(tool, stream, "u", TYPE_F8, cloud->node_count, 1, "", values);
 }
@@ -143,7 +150,7 @@ int main(int argc, char *argv[])
     TOOL_SCRATCH(&tool, int32_t, region, cloud.cell_count);
     TOOL_TRY(&tool, put_cloud(&stream, &cloud, region, &error));
     if (tool_given(&tool, "field")) {
-        put_field(&tool, &stream, &cloud, (enum cloud_function)function);
+        put_field(&tool, &stream, &cloud, function);
     }
     tool_write(&tool, &stream);
     return tool_end(&tool);

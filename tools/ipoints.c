@@ -85,26 +85,19 @@ static struct ipoints_options parse(const struct tool *tool, const struct mls *m
     return ipoints;
 }
 
-/* The options for this stream, with its dimension and recorded shape functions. */
-static struct ipoints_options parse_for(const struct tool *tool, const struct stream *stream)
-{
-    struct field_shapes recorded;
-    TOOL_TRY(tool, stage_recorded(stream, "support", &recorded, &error));
-    struct ipoints_options ipoints = parse(tool, &recorded.support.mls);
-    ipoints.refinement.support.visibility = recorded.support.visibility;
-    return ipoints;
-}
-
 int main(int argc, char *argv[])
 {
     struct tool tool;
     FREED_BY(stream_free) struct stream stream = {0};
     struct mls any = mls_default(0);
+    struct field_shapes recorded;
     int64_t unresolved;
     tool_begin(&tool, usage, 0, 1, argc, argv);
     (void)parse(&tool, &any); /* usage errors before waiting for the input */
     tool_read(&tool, tool.operands[0], &stream);
-    struct ipoints_options ipoints = parse_for(&tool, &stream);
+    TOOL_TRY(&tool, stage_recorded(&stream, "support", &recorded, &error));
+    struct ipoints_options ipoints = parse(&tool, &recorded.support.mls);
+    ipoints.refinement.support.visibility = recorded.support.visibility;
     TOOL_TRY(&tool, stage_ipoints(&stream, &ipoints, &unresolved, &error));
     if (unresolved > 0) {
         tool_note(&tool, "%jd cells change by more than the tolerance even at level %d", unresolved,

@@ -98,7 +98,7 @@ static void note_report(const struct tool *tool, const struct support_report *re
     tool_note(tool, "widened at %jd points, at most %.3g times", widened, widest);
     for (int l = 0; l < report->lists; l++) {
         const struct list_report *list = &report->list[l];
-        const struct support_lists *found = &list->lists;
+        const struct neighbours *found = &list->lists;
         tool_note(tool, "%jd %s: %jd to %jd neighbours, mean %.1f, widened at %jd", found->count, list->what,
                   found->fewest, found->most,
                   found->count > 0 ? (double)list->pairs / (double)found->count : 0.0, found->widened);

@@ -1,7 +1,7 @@
 static const char usage[] =
     "voxels - label image to node cloud, background cells, facets and node sets\n"
     "\n"
-    "usage: voxels -h LENGTH [--fine LENGTH[:NAME,...]] [--sizes FILE] [-l TABLE]\n"
+    "usage: voxels -h LENGTH [--fine LENGTH[:NAME,...]] [-l TABLE]\n"
     "              [-s AXIS=PLACE] [--largest] [-u UNIT] [-v] [-t] [-o FILE] [[LABEL=]IMAGE ...]\n"
     "       voxels -h LENGTH --surface NAME[|NAME] [--gap LENGTH] [--fine LENGTH[:NAME,...]] [-l TABLE]\n"
     "              [-s AXIS=PLACE] [--largest] [-u UNIT] [-v] [-o FILE] [[LABEL=]IMAGE ...]\n"
@@ -41,7 +41,6 @@ static const char usage[] =
     "  -h, --spacing LENGTH    of the lattice, with a unit: 6mm (required; a last -h is --help)\n"
     "      --fine LENGTH[:NAME,...]  spacing at all interfaces, with names at those of these labels only:\n"
     "                          that of -h is halved until it is no larger\n"
-    "      --sizes FILE        lengths of edges, by sizefield -b: the spacing is halved where they ask so\n"
     "      --surface NAME[|NAME]  write the surface of the first label; with a second name (or outside)\n"
     "                          only where that lies beyond it\n"
     "      --gap LENGTH        move it outward by LENGTH, less where it would cross itself\n"
@@ -70,9 +69,8 @@ static const char usage[] =
 #include <ctype.h>
 #include <math.h>
 #include <string.h>
-#include <unistd.h>
 
-/* Errors of volume above this share are reported, and a share of the body outside of the cells with sizes. */
+/* Errors of volume above this share are reported. */
 static const double reported_share = 0.01;
 
 static double shown(int dim, double volume)
@@ -88,15 +86,15 @@ static void report_labels(const struct tool *tool, const struct label_image *ima
     TOOL_SCRATCH(tool, double, volume, image->labels.count);
     TOOL_SCRATCH(tool, double, present, image->labels.count); /* without what --largest left out */
     TOOL_SCRATCH(tool, int64_t, lost, image->labels.count);
-    TOOL_TRY(tool, label_cells_lost(&image->labels, image->keep, result, lost, &error));
+    TOOL_TRY(tool, label_cells_lost(&image->labels, image->table.kept, result, lost, &error));
     for (int64_t c = 0; c < cells->count; c++) {
         volume[result->label[c]] += cell_volume(cells, c);
     }
     for (int64_t v = 0; v < image->labels.size[0] * image->labels.size[1] * image->labels.size[2]; v++) {
-        present[image->voxel[v]] += image->voxel_volume;
+        present[image->labels.label[v]] += image->voxel_volume;
     }
     for (int32_t l = 0; l < image->labels.count; l++) {
-        if (!image->keep[l] && lost[l] > 0) {
+        if (!image->table.kept[l] && lost[l] > 0) {
             tool_note(tool,
                       "%s: %.3g %s of gaps and cavities narrower than the spacing are filled: see --fine",
                       image->table.names.name[l], shown(dim, (double)lost[l] * image->voxel_volume), unit);
@@ -107,7 +105,7 @@ static void report_labels(const struct tool *tool, const struct label_image *ima
                after = shown(dim, volume[l]);
         double missing = shown(dim, (double)lost[l] * image->voxel_volume);
         const char *name = image->table.names.name[l];
-        if (!image->keep[l]) {
+        if (!image->table.kept[l]) {
             if (verbose) {
                 tool_note(tool, "%s: %.4g %s of voxels, left out", name, all, unit);
             }
@@ -162,10 +160,8 @@ static void report_cells(const struct tool *tool, const struct cells *cells, dou
 {
     double least = 180, most = 0;
     for (int64_t c = 0; c < cells->count; c++) {
-        const double *x[4];
         double angles[2];
-        cell_corners(cells, c, x);
-        simplex_angles(cells->dim, x, angles);
+        simplex_angles(cells, c, angles);
         least = fmin(least, angles[0]);
         most = fmax(most, angles[1]);
     }
@@ -184,10 +180,6 @@ static void report(const struct tool *tool, const struct label_image *image, con
                    double spacing, bool surface, bool verbose)
 {
     struct cells cells = label_cells_view(result);
-    if (result->unsized > reported_share) {
-        tool_note(tool, "%.3g %% of the body lie beyond the sizes: cells there are of the spacing of -h",
-                  100 * result->unsized);
-    }
     if (result->specks > 0) {
         tool_note(tool, "%jd bodies no larger than the spacing, %.3g %s in all, are left out", result->specks,
                   shown(cells.dim, result->speck_volume), cells.dim == 3 ? "ml" : "cm2");
@@ -221,13 +213,6 @@ static void write_stream(const struct tool *tool, const struct label_image *imag
     tool_write(tool, &stream);
 }
 
-/* Sizes at the nodes of cells, as views of a stream, which is to be freed. */
-struct label_sizes {
-    struct stream stream;
-    struct cells cells;
-    const double *size; /* cells.node_count, m, positive; NULL: no sizes */
-};
-
 /* The value of --fine, "3mm" or "3mm:ventricles,tumour", which must be less than `spacing`, m: *finest, m.
  * Returns an array of labels, to be freed; NULL: of all. Exits on failure. */
 static bool *label_fine_parse(const struct tool *tool, const struct label_image *image, const char *text,
@@ -253,39 +238,6 @@ static bool *label_fine_parse(const struct tool *tool, const struct label_image 
         fine[label] = true;
     }
     return fine;
-}
-
-/* Read the sections nodes.x, cells and size of the stream `file` (NULL: no sizes), in the dimension of the
- * image. Exits on failure. */
-static void label_sizes_read(const struct tool *tool, const struct label_image *image, const char *file,
-                             struct label_sizes *sizes)
-{
-    const struct section *section;
-    *sizes = (struct label_sizes){0};
-    if (file == NULL) {
-        return;
-    }
-    tool_read(tool, file, &sizes->stream);
-    TOOL_TRY(tool, stream_cells(&sizes->stream, true, &sizes->cells, &error));
-    TOOL_TRY(tool, stream_need(&sizes->stream, "size", TYPE_F8, 1, "sizefield -b", &section, &error));
-    if (sizes->cells.dim != image->labels.dim) {
-        tool_fail(tool, STATUS_INPUT, "--sizes: cells in %dD, the image is of a body in %dD",
-                  sizes->cells.dim, image->labels.dim);
-    }
-    if (section->rows != sizes->cells.node_count) {
-        tool_fail(tool, STATUS_INPUT, "--sizes: size: %jd rows for %jd nodes", section->rows,
-                  sizes->cells.node_count);
-    }
-    sizes->size = section->data;
-    TOOL_TRY(tool, fail_in(&error, section_check_numbers(section, POSITIVE, &error), "--sizes"));
-}
-
-/* Progress on a terminal: the step that begins; NULL: none. */
-static void show_step(void *context, const char *step)
-{
-    if (*(const bool *)context) {
-        fprintf(stderr, "\r%78s\r%s%s", "", step != NULL ? "voxels: " : "", step != NULL ? step : "");
-    }
 }
 
 static void check_options(const struct tool *tool)
@@ -317,28 +269,19 @@ int main(int argc, char *argv[])
     if (tool_given(&tool, "surface")) {
         label_surface_parse(&tool, &image, &surface);
         for (int32_t l = 0; l < image.labels.count; l++) {
-            image.keep[l] = l == surface.inner;
+            image.table.kept[l] = l == surface.inner;
         }
     }
-    bool shown = isatty(STDERR_FILENO);
-    struct label_cells_options label_cells_options = {.spacing = spacing,
-                                                      .keep = image.keep,
-                                                      .largest = tool_given(&tool, "largest"),
-                                                      .begin = show_step,
-                                                      .context = &shown};
+    struct label_cells_options label_cells_options = {
+        .spacing = spacing, .keep = image.table.kept, .largest = tool_given(&tool, "largest")};
     SCRATCH bool *fine = NULL;
     if (tool_given(&tool, "fine")) {
         fine =
             label_fine_parse(&tool, &image, tool_value(&tool, "fine"), spacing, &label_cells_options.finest);
         label_cells_options.fine = fine;
     }
-    struct label_sizes sizes;
-    label_sizes_read(&tool, &image, tool_value(&tool, "sizes"), &sizes);
-    label_cells_options.sized = &sizes.cells;
-    label_cells_options.size = sizes.size;
     struct error error;
     enum status status = label_cells_make(&image.labels, &label_cells_options, &result, &error);
-    show_step(&shown, NULL);
     const char *length = tool_value(&tool, "spacing");
     if (status == STATUS_INPUT && !isalpha((unsigned char)length[strlen(length) - 1])) {
         tool_fail(&tool, status, "%s -h %s is %s m: give a unit, as -h %smm", error.text, length, length,
@@ -351,6 +294,5 @@ int main(int argc, char *argv[])
     } else {
         write_stream(&tool, &image, &result);
     }
-    stream_free(&sizes.stream);
     return tool_end(&tool);
 }

@@ -6,53 +6,28 @@
 
 #include <string.h>
 
-/* The points of one section, and their lists of one prefix. */
-struct tabulated {
-    int64_t node_count;
-    const double *nodes, *radius, *x;
-    const char *section;
-    struct neighbours lists;
-};
-
-static enum status view_points(const struct stream *stream, const char *section, const char *prefix,
-                               struct tabulated *of, struct error *error)
+/* Tabulate phi and, unless NULL, gradients, to be freed, at the points of one section on the lists of one
+ * prefix. */
+static enum status tabulate(const struct stream *stream, const struct mls *mls, const char *section,
+                            const char *prefix, struct neighbours *lists, double **phi, double **dphi,
+                            struct error *error)
 {
     int dim;
+    int64_t node_count;
+    const double *nodes;
     const struct section *points, *radius;
-    RETURN_IF_ERROR(stream_nodes(stream, &dim, &of->node_count, &of->nodes, error));
+    RETURN_IF_ERROR(stream_nodes(stream, &dim, &node_count, &nodes, error));
     RETURN_IF_ERROR(stream_view(stream, section, &points, error));
     RETURN_IF_ERROR(stream_view(stream, "support.radius", &radius, error));
-    RETURN_IF_ERROR(stream_neighbours(stream, prefix, points->rows, &of->lists, error));
-    if (of->lists.widen == NULL) {
+    RETURN_IF_ERROR(stream_neighbours(stream, prefix, points->rows, lists, error));
+    if (lists->widen == NULL) {
         return fail(error, STATUS_INPUT, "no section %s.widen: run support", prefix);
     }
-    of->x = points->data;
-    of->radius = radius->data;
-    of->section = section;
-    return STATUS_OK;
-}
-
-/* Tabulate phi, and gradients, at the points of one section on the lists of one prefix. */
-static enum status tabulate(struct stream *stream, const struct mls *mls, const char *section,
-                            const char *prefix, const char *phi_name, bool gradients, struct error *error)
-{
-    struct tabulated of;
-    SCRATCH double *dphi = NULL;
-    char attributes[64];
-    RETURN_IF_ERROR(view_points(stream, section, prefix, &of, error));
-    int64_t pairs = of.lists.ptr[of.lists.count];
-    NEW_SCRATCH(double, phi, pairs, error);
-    if (gradients) {
-        RETURN_IF_ERROR(NEW_ARRAY(&dphi, pairs * mls->dim, error));
-    }
-    RETURN_IF_ERROR(shape_table(mls, of.nodes, of.radius, &of.lists, of.x, section, phi, dphi, error));
-    RETURN_IF_ERROR(stream_put(stream, phi_name, TYPE_F8, pairs, 1, "", array_take(&phi), true, error));
-    if (gradients) {
-        RETURN_IF_ERROR(stream_put(stream, "shape.dphi", TYPE_F8, pairs, mls->dim,
-                                   vector_attributes(mls->dim, "1/m", attributes), array_take(&dphi), true,
-                                   error));
-    }
-    return STATUS_OK;
+    int64_t pairs = lists->ptr[lists->count];
+    RETURN_IF_ERROR(NEW_ARRAY(phi, pairs, error));
+    RETURN_IF_ERROR(dphi != NULL ? NEW_ARRAY(dphi, pairs * dim, error) : STATUS_OK);
+    return shape_table(mls, nodes, radius->data, lists, points->data, section, *phi,
+                       dphi != NULL ? *dphi : NULL, error);
 }
 
 /* The values at the points of boundary faces, and for smoothed cells the rows of the edges. What lies at
@@ -60,17 +35,16 @@ static enum status tabulate(struct stream *stream, const struct mls *mls, const 
 static enum status put_faces(struct stream *stream, const struct mls *mls, bool smoothed, struct error *error)
 {
     struct faces faces;
-    struct tabulated of;
+    struct neighbours lists;
+    SCRATCH double *phi = NULL;
     FREED_BY(shape_rows_free) struct shape_rows edges = {0};
     RETURN_IF_ERROR(stream_faces(stream, &faces, error));
-    RETURN_IF_ERROR(view_points(stream, "facepoints.x", "facepoint", &of, error));
-    if (of.lists.count != face_point_count(&faces)) {
+    RETURN_IF_ERROR(tabulate(stream, mls, "facepoints.x", "facepoint", &lists, &phi, NULL, error));
+    if (lists.count != face_point_count(&faces)) {
         return fail(error, STATUS_INPUT, "facepoints.x: does not fit faces: run ipoints again");
     }
-    NEW_SCRATCH(double, phi, of.lists.ptr[of.lists.count], error);
-    RETURN_IF_ERROR(shape_table(mls, of.nodes, of.radius, &of.lists, of.x, of.section, phi, NULL, error));
     if (smoothed) {
-        RETURN_IF_ERROR(shape_on_edges(&of.lists, phi, &faces, &edges, error));
+        RETURN_IF_ERROR(shape_on_edges(&lists, phi, &faces, &edges, error));
         int64_t rows = face_row_count(&faces), pairs = edges.ptr[rows];
         RETURN_IF_ERROR(
             stream_put(stream, "edge.ptr", TYPE_I8, rows + 1, 1, "", array_take(&edges.ptr), true, error));
@@ -79,9 +53,9 @@ static enum status put_faces(struct stream *stream, const struct mls *mls, bool 
         RETURN_IF_ERROR(
             stream_put(stream, "edge.phi", TYPE_F8, pairs, 1, "", array_take(&edges.phi), true, error));
     }
-    int64_t rows = face_boundary_points(&faces), pairs = of.lists.ptr[rows];
-    RETURN_IF_ERROR(stream_put_copy(stream, "boundary.ptr", TYPE_I8, rows + 1, 1, "", of.lists.ptr, error));
-    RETURN_IF_ERROR(stream_put_copy(stream, "boundary.idx", TYPE_I4, pairs, 1, "", of.lists.idx, error));
+    int64_t rows = face_boundary_points(&faces), pairs = lists.ptr[rows];
+    RETURN_IF_ERROR(stream_put_copy(stream, "boundary.ptr", TYPE_I8, rows + 1, 1, "", lists.ptr, error));
+    RETURN_IF_ERROR(stream_put_copy(stream, "boundary.idx", TYPE_I4, pairs, 1, "", lists.idx, error));
     RETURN_IF_ERROR(stream_put_copy(stream, "boundary.phi", TYPE_F8, pairs, 1, "", phi, error));
     for (int64_t s = stream->section_count - 1; s >= 0; s--) {
         if (strncmp(stream->sections[s].name, "facepoint", strlen("facepoint")) == 0) {
@@ -94,6 +68,9 @@ static enum status put_faces(struct stream *stream, const struct mls *mls, bool 
 enum status stage_shapefn(struct stream *stream, const struct mls *mls, struct error *error)
 {
     const struct section *points;
+    struct neighbours lists;
+    SCRATCH double *phi = NULL, *dphi = NULL;
+    char attributes[64];
     sections_remove(stream, MADE_WITH_SHAPES, MADE_WITH_SHAPES);
     RETURN_IF_ERROR(stream_view(stream, "points.x", &points, error));
     bool smoothed = points_are_smoothed(points);
@@ -101,9 +78,17 @@ enum status stage_shapefn(struct stream *stream, const struct mls *mls, struct e
         RETURN_IF_ERROR(put_faces(stream, mls, smoothed, error));
     }
     if (!smoothed) {
-        RETURN_IF_ERROR(tabulate(stream, mls, "points.x", "nbr", "shape.phi", true, error));
+        RETURN_IF_ERROR(tabulate(stream, mls, "points.x", "nbr", &lists, &phi, &dphi, error));
+        int64_t pairs = lists.ptr[lists.count];
+        RETURN_IF_ERROR(
+            stream_put(stream, "shape.phi", TYPE_F8, pairs, 1, "", array_take(&phi), true, error));
+        RETURN_IF_ERROR(stream_put(stream, "shape.dphi", TYPE_F8, pairs, mls->dim,
+                                   vector_attributes(mls->dim, "1/m", attributes), array_take(&dphi), true,
+                                   error));
     }
-    return tabulate(stream, mls, "nodes.x", "node", "node.phi", false, error);
+    RETURN_IF_ERROR(tabulate(stream, mls, "nodes.x", "node", &lists, &phi, NULL, error));
+    return stream_put(stream, "node.phi", TYPE_F8, lists.ptr[lists.count], 1, "", array_take(&phi), true,
+                      error);
 }
 
 /* ---- the tables of a stream, for mtled ---- */

@@ -33,8 +33,8 @@ MUST_CHECK enum status stage_radii(const struct stream *stream, const struct sup
 struct list_report {
     const char *what; /* "points on faces" */
     int64_t pairs;
-    struct support_lists lists; /* without its arrays */
-    char steepest[96];          /* the place of the worst of lists.steep */
+    struct neighbours lists; /* without its arrays */
+    char steepest[96];       /* the place of the worst of lists.steep */
 };
 
 /* and of all lists. */

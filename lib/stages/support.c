@@ -22,49 +22,34 @@ enum status stage_radii(const struct stream *stream, const struct support_option
     return support_radii(options, node_count, spacing, radius, error);
 }
 
-/* Points of one section in these cells, their lists PREFIX.ptr, .idx, .widen, and their name in the
- * report. */
-struct listed {
-    const struct section *points;
-    struct visibility_places places;
-    const char *prefix, *called;
-};
+/* Put a section PREFIX.NAME. The stream takes the array *array, which becomes NULL, also on failure. */
+static enum status put_member(struct stream *stream, const char *prefix, const char *name,
+                              enum element_type type, int64_t rows, void *array, struct error *error)
+{
+    char full[64];
+    snprintf(full, sizeof full, "%s.%s", prefix, name);
+    return stream_put(stream, full, type, rows, 1, "", array_take(array), true, error);
+}
 
+/* Put the lists PREFIX.ptr, .idx, .widen of points in these cells, which the report calls `called`. */
 static enum status put_lists(struct stream *stream, const struct support_options *options,
-                             const struct support_space *space, const struct listed *listed,
+                             const struct visibility *space, const struct section *points,
+                             const struct visibility_places *places, const char *prefix, const char *called,
                              struct support_report *report, struct error *error)
 {
-    const struct section *points = listed->points;
-    const char *prefix = listed->prefix;
-    FREED_BY(support_free) struct support_lists lists = {0};
+    FREED_BY(support_free) struct neighbours lists = {0};
     int64_t count = points->rows;
-    RETURN_IF_ERROR(
-        support_build(options, space, &listed->places, count, points->data, points->name, &lists, error));
+    RETURN_IF_ERROR(support_build(options, space, places, count, points->data, points->name, &lists, error));
     int64_t pairs = lists.ptr[count];
     struct list_report *told = &report->list[report->lists++];
-    *told = (struct list_report){.what = listed->called, .pairs = pairs, .lists = lists};
+    *told = (struct list_report){.what = called, .pairs = pairs, .lists = lists};
     if (lists.steep.count > 0) {
         point_text((int)points->cols, (const double *)points->data + lists.steep.point * points->cols,
                    told->steepest);
     }
-    RETURN_IF_ERROR(stream_put_member(stream, prefix, "ptr", TYPE_I8, count + 1, 1, "", &lists.ptr, error));
-    RETURN_IF_ERROR(stream_put_member(stream, prefix, "idx", TYPE_I4, pairs, 1, "", &lists.idx, error));
-    RETURN_IF_ERROR(stream_put_member(stream, prefix, "widen", TYPE_F8, count, 1, "", &lists.widen, error));
-    return STATUS_OK;
-}
-
-/* The cells of the integration points; they are searched for if there is no such section. */
-static enum status places_of_points(const struct stream *stream, struct visibility_places *places,
-                                    struct error *error)
-{
-    const struct section *section = stream_find(stream, "points.cell");
-    *places = (struct visibility_places){0};
-    if (section == NULL) {
-        return STATUS_OK;
-    }
-    RETURN_IF_ERROR(stream_view(stream, "points.cell", &section, error));
-    *places = (struct visibility_places){.cell = section->data, .points_per_row = 1};
-    return STATUS_OK;
+    RETURN_IF_ERROR(put_member(stream, prefix, "ptr", TYPE_I8, count + 1, &lists.ptr, error));
+    RETURN_IF_ERROR(put_member(stream, prefix, "idx", TYPE_I4, pairs, &lists.idx, error));
+    return put_member(stream, prefix, "widen", TYPE_F8, count, &lists.widen, error);
 }
 
 /* The cells at the points of faces, in (*ptr)[] and (*cell)[], to be freed; they are searched for if there is
@@ -93,40 +78,40 @@ static enum status places_of_face_points(const struct stream *stream, const stru
 static enum status stage_lists(struct stream *stream, const struct support_options *options,
                                struct support_report *report, struct error *error)
 {
-    FREED_BY(support_space_free) struct support_space space = {0};
-    const struct section *points, *facepoints;
-    struct support_options actual = *options;
+    FREED_BY(visibility_free) struct visibility space = {0};
+    const struct section *points, *cell;
+    struct visibility_places places = {0};
     struct cells cells;
-    struct listed listed;
     SCRATCH int64_t *face_ptr = NULL;
     SCRATCH int32_t *face_cell = NULL;
-    *report = (struct support_report){.visibility = actual.visibility};
+    *report = (struct support_report){.visibility = options->visibility};
     RETURN_IF_ERROR(stream_cells(stream, false, &cells, error));
     RETURN_IF_ERROR(stream_view(stream, "points.x", &points, error));
-    if (actual.side != NULL) {
+    if (options->side != NULL) {
         RETURN_IF_ERROR(
-            stream_put_copy(stream, "support.side", TYPE_I4, cells.count, 1, "", actual.side, error));
+            stream_put_copy(stream, "support.side", TYPE_I4, cells.count, 1, "", options->side, error));
     }
-    RETURN_IF_ERROR(
-        support_space_build(&actual, &cells, stream_find(stream, "support.radius")->data, &space, error));
-    bool smoothed = points_are_smoothed(points); /* gradients come from the faces alone */
+    RETURN_IF_ERROR(visibility_build(&cells, stream_find(stream, "support.radius")->data, options->visibility,
+                                     options->side, &space, error));
+    bool smoothed = points_are_smoothed(points);                   /* gradients come from the faces alone */
+    if (!smoothed && stream_find(stream, "points.cell") != NULL) { /* else cells are searched for */
+        RETURN_IF_ERROR(stream_view(stream, "points.cell", &cell, error));
+        places = (struct visibility_places){.cell = cell->data, .points_per_row = 1};
+    }
     if (!smoothed) {
-        listed = (struct listed){.points = points, .prefix = "nbr", .called = "integration points"};
-        RETURN_IF_ERROR(places_of_points(stream, &listed.places, error));
-        RETURN_IF_ERROR(put_lists(stream, &actual, &space, &listed, report, error));
+        RETURN_IF_ERROR(
+            put_lists(stream, options, &space, points, &places, "nbr", "integration points", report, error));
     }
     if (stream_find(stream, "faces") != NULL || smoothed) {
-        RETURN_IF_ERROR(stream_view(stream, "facepoints.x", &facepoints, error));
-        listed = (struct listed){.points = facepoints, .prefix = "facepoint", .called = "points on faces"};
-        RETURN_IF_ERROR(places_of_face_points(stream, &cells, facepoints->rows, &face_ptr, &face_cell,
-                                              &listed.places, error));
-        RETURN_IF_ERROR(put_lists(stream, &actual, &space, &listed, report, error));
+        RETURN_IF_ERROR(stream_view(stream, "facepoints.x", &points, error));
+        RETURN_IF_ERROR(
+            places_of_face_points(stream, &cells, points->rows, &face_ptr, &face_cell, &places, error));
+        RETURN_IF_ERROR(put_lists(stream, options, &space, points, &places, "facepoint", "points on faces",
+                                  report, error));
     }
-    listed = (struct listed){.points = stream_find(stream, "nodes.x"),
-                             .places = {.nodes = true},
-                             .prefix = "node",
-                             .called = "nodes"};
-    return put_lists(stream, &actual, &space, &listed, report, error);
+    places = (struct visibility_places){.nodes = true};
+    return put_lists(stream, options, &space, stream_find(stream, "nodes.x"), &places, "node", "nodes",
+                     report, error);
 }
 
 enum status stage_support(struct stream *stream, const struct support_options *options,
@@ -224,4 +209,179 @@ enum status stage_renew(struct stream *stream, const int32_t *side, struct error
     RETURN_IF_ERROR(stage_record(stream, &recorded, cells.node_count, radius, error));
     RETURN_IF_ERROR(stage_lists(stream, &recorded.support, &report, error));
     return stage_shapefn(stream, &recorded.shapes, error);
+}
+
+/* ---- settings as options of command lines, and as attributes of the section of radii ---- */
+
+enum { DESCRIPTION = 960 }; /* bytes of the attributes */
+
+static enum status apply_mu(const char *text, struct mls *mls, struct error *error)
+{
+    int count, wanted = mls_second_order_count(mls->dim);
+    RETURN_IF_ERROR(parse_double_list(text, "--mu", 0.0, 1e300, MLS_MAX_SECOND, mls->mu, &count, error));
+    bool fits = mls->dim == 0 ? count == 3 || count == 6 : count == wanted;
+    if (count != 1 && !fits && mls->dim == 0) {
+        return fail(error, STATUS_INPUT, "--mu: %d values; give one, or in 2D 3, in 3D 6", count);
+    }
+    if (count != 1 && !fits) {
+        return fail(error, STATUS_INPUT, "--mu: %d values; in %dD give one, or %d", count, mls->dim, wanted);
+    }
+    for (int k = count; k < MLS_MAX_SECOND; k++) {
+        mls->mu[k] = mls->mu[count - 1];
+    }
+    return STATUS_OK;
+}
+
+enum status mls_apply(const struct mls_texts *texts, struct mls *mls, struct error *error)
+{
+    int choice;
+    if (texts->basis != NULL) {
+        RETURN_IF_ERROR(parse_choice(texts->basis, "-b", basis_names, BASIS_COUNT, &choice, error));
+        mls->basis = (enum basis)choice;
+    }
+    if (texts->weight != NULL) {
+        RETURN_IF_ERROR(parse_choice(texts->weight, "-w", weight_names, WEIGHT_COUNT, &choice, error));
+        mls->weight = (enum weight_function)choice;
+    }
+    if (texts->mu != NULL) {
+        mls->mu_absolute = false;
+        RETURN_IF_ERROR(apply_mu(texts->mu, mls, error));
+    }
+    if (texts->mu_unit != NULL) {
+        double unit;
+        if (texts->mu == NULL) {
+            return fail(error, STATUS_INPUT, "--mu-unit: needs --mu");
+        }
+        RETURN_IF_ERROR(parse_length_unit(texts->mu_unit, "--mu-unit", &unit, error));
+        /* mu is used as mu / s^4 with s in this unit. */
+        for (int k = 0; k < MLS_MAX_SECOND; k++) {
+            mls->mu[k] *= unit * unit * unit * unit;
+        }
+        mls->mu_absolute = true;
+    }
+    return STATUS_OK;
+}
+
+/* text[size] = "basis=mmls2 weight=quartic mu_absolute=0 mu=1e-07,1e-07,1e-07", each key with the prefix. */
+static void describe_mls(const struct mls *mls, const char *prefix, char *text, size_t size)
+{
+    snprintf(text, size, "%sbasis=%s %sweight=%s %smu_absolute=%d %smu=", prefix, basis_names[mls->basis],
+             prefix, weight_names[mls->weight], prefix, mls->mu_absolute, prefix);
+    for (int k = 0; k < mls_second_order_count(mls->dim); k++) {
+        text_append(text, size, "%s%.17g", k > 0 ? "," : "", mls->mu[k]);
+    }
+}
+
+/* The attributes that record the settings; rarely used ones only if they are set. */
+static void describe(const struct field_shapes *recorded, char text[DESCRIPTION])
+{
+    const struct support_options *options = &recorded->support;
+    const struct support_options usual = support_defaults(options->mls.dim);
+    char mls[DESCRIPTION / 3], shapes[DESCRIPTION / 3], lists[DESCRIPTION / 6] = "";
+    describe_mls(&options->mls, "", mls, sizeof mls);
+    describe_mls(&recorded->shapes, "", shapes, sizeof shapes);
+    bool same = strcmp(mls, shapes) == 0;
+    describe_mls(&recorded->shapes, " shape_", shapes, sizeof shapes);
+    if (options->least != usual.least || options->most != usual.most || options->widen != usual.widen ||
+        options->gradient_bound != usual.gradient_bound) {
+        snprintf(lists, sizeof lists, " least=%jd most=%jd widen=%d bound=%.17g", options->least,
+                 options->most, options->widen, options->gradient_bound);
+    }
+    snprintf(text, DESCRIPTION, "unit=m reach=%s %s%s%s", visibility_names[options->visibility], mls, lists,
+             same ? "" : shapes);
+}
+
+/* The settings of shape functions, from attributes with this prefix. */
+static enum status read_mls(const struct section *section, const char *prefix, struct mls *mls,
+                            struct error *error)
+{
+    static const char *const keys[] = {"basis", "weight", "mu", "mu_absolute"};
+    char value[4][256], key[32];
+    struct error own;
+    bool given[4];
+    for (int k = 0; k < 4; k++) {
+        snprintf(key, sizeof key, "%s%s", prefix, keys[k]);
+        given[k] = section_attribute(section, key, value[k], sizeof value[k]);
+    }
+    const struct mls_texts texts = {.basis = given[0] ? value[0] : NULL,
+                                    .weight = given[1] ? value[1] : NULL,
+                                    .mu = given[2] ? value[2] : NULL};
+    enum status status = mls_apply(&texts, mls, &own);
+    mls->mu_absolute = given[3] ? strcmp(value[3], "0") != 0 : mls->mu_absolute;
+    return status == STATUS_OK ? status : fail(error, status, "%s: %s", section->name, own.text);
+}
+
+enum status stage_recorded(const struct stream *stream, const char *prefix, struct field_shapes *recorded,
+                           struct error *error)
+{
+    struct support_options *options = &recorded->support;
+    char name[64], value[64];
+    int dim, choice = VISIBILITY_CELLS;
+    int64_t widen = 1;
+    const struct section *radius;
+    snprintf(name, sizeof name, "%s.radius", prefix);
+    RETURN_IF_ERROR(stream_nodes(stream, &dim, NULL, NULL, error));
+    *recorded = (struct field_shapes){.support = support_defaults(dim)};
+    recorded->shapes = options->mls;
+    if (stream_find(stream, name) == NULL) {
+        return STATUS_OK;
+    }
+    RETURN_IF_ERROR(stream_view(stream, name, &radius, error));
+    recorded->radius = radius->data;
+    RETURN_IF_ERROR(stage_sides(stream, prefix, &options->side, error));
+    RETURN_IF_ERROR(read_mls(radius, "", &options->mls, error));
+    recorded->shapes = options->mls;
+    RETURN_IF_ERROR(read_mls(radius, "shape_", &recorded->shapes, error));
+    if (section_attribute(radius, "reach", value, sizeof value)) {
+        RETURN_IF_ERROR(parse_choice(value, name, visibility_names, VISIBILITY_RULE_COUNT, &choice, error));
+        options->visibility = (enum visibility_rule)choice;
+    }
+    const struct {
+        const char *key;
+        int64_t *count;
+    } counts[] = {{"least", &options->least}, {"most", &options->most}, {"widen", &widen}};
+    for (int i = 0; i < 3; i++) {
+        if (section_attribute(radius, counts[i].key, value, sizeof value)) {
+            RETURN_IF_ERROR(parse_integer(value, name, 0, 1000000, counts[i].count, error));
+        }
+    }
+    options->widen = widen != 0;
+    if (section_attribute(radius, "bound", value, sizeof value)) {
+        RETURN_IF_ERROR(parse_double(value, name, 1.0, 1e6, &options->gradient_bound, error));
+    }
+    return STATUS_OK;
+}
+
+enum status stage_record(struct stream *stream, const struct field_shapes *recorded, int64_t node_count,
+                         const double *radius, struct error *error)
+{
+    char described[DESCRIPTION];
+    describe(recorded, described);
+    return stream_put_copy(stream, "support.radius", TYPE_F8, node_count, 1, described, radius, error);
+}
+
+/* ---- the field that mtled computed ---- */
+
+static const char parameters[] = "parameters";
+
+const struct section *solved_parameters(const struct stream *stream, const struct field_shapes *recorded,
+                                        const struct section *field)
+{
+    char name[96];
+    if (recorded->radius == NULL ||
+        (strcmp(field->name, "u") != 0 && strncmp(field->name, "u.frame.", 8) != 0)) {
+        return field;
+    }
+    snprintf(name, sizeof name, "%s%s", parameters, field->name + 1);
+    const struct section *found = stream_find(stream, name);
+    bool fits = found != NULL && found->type == field->type && found->rows == field->rows &&
+                found->cols == field->cols;
+    return fits ? found : field;
+}
+
+bool solved_is_parameters(const struct section *section)
+{
+    size_t length = strlen(parameters);
+    return strncmp(section->name, parameters, length) == 0 &&
+           (section->name[length] == '\0' || section->name[length] == '.');
 }

@@ -322,15 +322,6 @@ enum status stream_neighbours(const struct stream *stream, const char *prefix, i
     return STATUS_OK;
 }
 
-enum status stream_put_member(struct stream *stream, const char *prefix, const char *name,
-                              enum element_type type, int64_t rows, int64_t cols, const char *attributes,
-                              void *array, struct error *error)
-{
-    char full[64];
-    snprintf(full, sizeof full, "%s.%s", prefix, name);
-    return stream_put(stream, full, type, rows, cols, attributes, array_take(array), true, error);
-}
-
 enum status stream_put_copy(struct stream *stream, const char *name, enum element_type type, int64_t rows,
                             int64_t cols, const char *attributes, const void *data, struct error *error)
 {

@@ -72,11 +72,6 @@ MUST_CHECK enum status stream_neighbours(const struct stream *stream, const char
 /* Whether points.x has one point for each cell, for smoothed cells. */
 bool points_are_smoothed(const struct section *points);
 
-/* Put section PREFIX.NAME. The stream takes the array *array, which becomes NULL, also on failure. */
-MUST_CHECK enum status stream_put_member(struct stream *stream, const char *prefix, const char *name,
-                                         enum element_type type, int64_t rows, int64_t cols,
-                                         const char *attributes, void *array, struct error *error);
-
 /* Put a section with a copy of the data. */
 MUST_CHECK enum status stream_put_copy(struct stream *stream, const char *name, enum element_type type,
                                        int64_t rows, int64_t cols, const char *attributes, const void *data,

@@ -17,13 +17,14 @@ double problem_heap_bytes(void)
 
 /* Lists by distance, as the tool support makes them; the space belongs to it. */
 static enum status build_lists(const struct problem *problem, int64_t count, const double *x,
-                               const char *name, struct support_lists *lists, struct error *error)
+                               const char *name, struct neighbours *lists, struct error *error)
 {
     struct support_options options = problem->options;
-    FREED_BY(support_space_free) struct support_space space = {0};
+    FREED_BY(visibility_free) struct visibility space = {0};
     options.visibility = VISIBILITY_DISTANCE;
     support_free(lists);
-    RETURN_IF_ERROR(support_space_build(&options, &problem->cells, problem->radius, &space, error));
+    RETURN_IF_ERROR(
+        visibility_build(&problem->cells, problem->radius, options.visibility, options.side, &space, error));
     return support_build(&options, &space, NULL, count, x, name, lists, error);
 }
 
@@ -39,7 +40,7 @@ enum status problem_nodes(struct problem *problem, struct error *error)
     const double *x = problem->cells.x;
     RETURN_IF_ERROR(build_lists(problem, count, x, "nodes.x", &problem->node_lists, error));
     RETURN_IF_ERROR(NEW_ARRAY(&problem->node_phi, problem->node_lists.ptr[count], error));
-    struct neighbours lists = support_view(&problem->node_lists);
+    struct neighbours lists = problem->node_lists;
     return shape_table(&problem->options.mls, x, problem->radius, &lists, x, "nodes.x", problem->node_phi,
                        NULL, error);
 }
@@ -48,7 +49,7 @@ enum status problem_nodes(struct problem *problem, struct error *error)
 static enum status run_shape(struct problem *problem, bool gradients, struct error *error)
 {
     int64_t pairs = problem->lists.ptr[problem->point_count];
-    struct neighbours lists = support_view(&problem->lists);
+    struct neighbours lists = problem->lists;
     if (problem->phi == NULL) {
         RETURN_IF_ERROR(NEW_ARRAY(&problem->phi, pairs, error));
     }

@@ -13,8 +13,8 @@ struct problem {
     struct faces faces;
     double *radius, *points, *phi, *dphi;
     int64_t point_count;
-    struct support_lists lists;      /* of the points, */
-    struct support_lists node_lists; /* and of the nodes with their values, by problem_nodes */
+    struct neighbours lists;      /* of the points, */
+    struct neighbours node_lists; /* and of the nodes with their values, by problem_nodes */
     double *node_phi;
     double heap; /* bytes in use before any list or table */
 };

@@ -80,13 +80,14 @@ static double *stiffness(const struct body *body, int64_t count, const double *x
     int dim = body->cells.dim;
     int64_t n = body->cells.node_count;
     double *K = zeros(n * n, sizeof *K);
-    FREED_BY(support_space_free) struct support_space space = {0};
-    FREED_BY(support_free) struct support_lists found = {0};
-    GOOD(support_space_build(&body->options.support, &body->cells, body->radius, &space, &error));
+    FREED_BY(visibility_free) struct visibility space = {0};
+    FREED_BY(support_free) struct neighbours found = {0};
+    GOOD(visibility_build(&body->cells, body->radius, body->options.support.visibility,
+                          body->options.support.side, &space, &error));
     GOOD(support_build(&body->options.support, &space, NULL, count, x, "points.x", &found, &error));
     double *phi = zeros(found.ptr[count], sizeof *phi);
     double *dphi = zeros(found.ptr[count] * dim, sizeof *dphi);
-    struct neighbours view = support_view(&found);
+    struct neighbours view = found;
     GOOD(shape_table(&body->options.support.mls, body->cells.x, body->radius, &view, x, "points.x", phi, dphi,
                      &error));
     for (int64_t p = 0; p < count; p++) {

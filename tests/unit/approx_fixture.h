@@ -64,8 +64,8 @@ static inline void scattered_free(struct scattered *cloud)
 /* Supports and shape functions of all points of a cloud. */
 struct table {
     double *radius, *phi, *dphi;
-    struct support_space space;
-    struct support_lists lists;
+    struct visibility space;
+    struct neighbours lists;
 };
 
 static inline void table_free(struct table *table)
@@ -74,7 +74,7 @@ static inline void table_free(struct table *table)
     free(table->phi);
     free(table->dphi);
     support_free(&table->lists);
-    support_space_free(&table->space);
+    visibility_free(&table->space);
 }
 
 /* As far as it goes: the status tells. Radii from nodes_spacing unless options->radius. */
@@ -91,7 +91,8 @@ static inline enum status tabulate(const struct support_options *options, int64_
     }
     if (status == STATUS_OK) {
         const struct cells none = {.dim = dim, .node_count = count, .x = x};
-        status = support_space_build(options, &none, table->radius, &table->space, error);
+        status =
+            visibility_build(&none, table->radius, options->visibility, options->side, &table->space, error);
     }
     if (status == STATUS_OK) {
         status = support_build(options, &table->space, NULL, point_count, points, "points.x", &table->lists,
@@ -101,7 +102,7 @@ static inline enum status tabulate(const struct support_options *options, int64_
         int64_t pairs = table->lists.ptr[point_count];
         table->phi = malloc((size_t)pairs * sizeof(double));
         table->dphi = malloc((size_t)(pairs * dim) * sizeof(double));
-        struct neighbours lists = support_view(&table->lists);
+        struct neighbours lists = table->lists;
         status = shape_table(&options->mls, x, table->radius, &lists, points, "points.x", table->phi,
                              table->dphi, error);
     }

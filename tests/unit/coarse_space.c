@@ -2,7 +2,7 @@
  * sums and with themselves, whatever the threads. */
 #include "unit.h"
 
-#include "approx/cells/renumber.h"
+#include "approx/cells/cells.h"
 #include "base/vector.h"
 #include "solid/preconditioner/coarse_space.h"
 

@@ -3,7 +3,6 @@
 #include "box_fixture.h"
 
 #include "approx/error/field_error.h"
-#include "approx/error/size_field.h"
 
 static struct cloud lattice(int dim, int n, double jitter)
 {

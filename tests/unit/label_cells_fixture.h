@@ -57,12 +57,8 @@ static inline void check_cells(const struct label_cells *mesh)
     assert_true(mesh->cell_count > 0);
     GOOD(cells_check(&cells, &error));
     for (int64_t c = 0; c < cells.count; c++) {
-        const double *x[4];
         double angles[2];
-        for (int k = 0; k <= dim; k++) {
-            x[k] = cells.x + (int64_t)cells.node[c * (dim + 1) + k] * dim;
-        }
-        simplex_angles(dim, x, angles);
+        simplex_angles(&cells, c, angles);
         assert_true(angles[0] >= 8 && angles[1] <= 165);
         assert_true(cell_quality(&cells, c) >= POOR_QUALITY);
         volume += cell_volume(&cells, c);

@@ -2,7 +2,7 @@
 #include "box_fixture.h"
 
 #include "approx/field/motion.h"
-#include "approx/cells/raster.h"
+#include "approx/cells/cells.h"
 #include "base/vector.h"
 
 /* A jittered cloud in the unit square or cube, and a field on it. */

@@ -160,13 +160,13 @@ static void smoothed_build(struct smoothed *s, int dim, int64_t per_axis, enum b
     assert_non_null(s->points);
     face_points(&s->faces, s->cells.x, s->points);
     GOOD(tabulate(&options, s->cells.node_count, s->cells.x, count, s->points, &s->table, &error));
-    s->lists = support_view(&s->table.lists);
+    s->lists = s->table.lists;
     GOOD(shape_on_edges(&s->lists, s->table.phi, &s->faces, &s->edges, &error));
     struct neighbours edges = {.count = face_row_count(&s->faces), .ptr = s->edges.ptr, .idx = s->edges.idx};
     FREED_BY(table_free) struct table at_nodes = {0};
     GOOD(tabulate(&options, s->cells.node_count, s->cells.x, s->cells.node_count, s->cells.x, &at_nodes,
                   &error));
-    struct neighbours nodes = support_view(&at_nodes.lists);
+    struct neighbours nodes = at_nodes.lists;
     const struct cell_sources sources = {&edges, &nodes, s->edges.phi, at_nodes.phi};
     s->smooth = cell_table_make(&s->cells, &s->faces, &sources);
 }

@@ -54,8 +54,8 @@ TEST_IN_EACH_DIM(lists_against_brute_force)
         FREED_BY(scattered_free)
         struct scattered cloud = scatter(dim, dim == 2 ? 20 : 8, POINTS, &places[2], 0.4, 17);
         struct support_options options = support_defaults(dim);
-        FREED_BY(support_space_free) struct support_space space = {0};
-        FREED_BY(support_free) struct support_lists lists = {0};
+        FREED_BY(visibility_free) struct visibility space = {0};
+        FREED_BY(support_free) struct neighbours lists = {0};
         double *radius = zeros(cloud.count, sizeof *radius);
         options.widen = false;
         for (int64_t n = 0; n < cloud.count; n++) {
@@ -69,7 +69,7 @@ TEST_IN_EACH_DIM(lists_against_brute_force)
             }
         }
         const struct cells none = {.dim = dim, .node_count = cloud.count, .x = cloud.x};
-        GOOD(support_space_build(&options, &none, radius, &space, &error));
+        GOOD(visibility_build(&none, radius, options.visibility, options.side, &space, &error));
         GOOD(support_build(&options, &space, NULL, POINTS, cloud.points, "points.x", &lists, &error));
         int64_t fewest = cloud.count, most = 0;
         for (int64_t p = 0; p < POINTS; p++) {
@@ -147,12 +147,12 @@ TEST(nearest_with_ties)
     static const int64_t most[] = {1, 4, 5, 7};
     for (int i = 0; i < 4; i++) {
         struct support_options options = {.radius = 2.1, .most = most[i], .mls = mls_default(2)};
-        FREED_BY(support_space_free) struct support_space space = {0};
-        FREED_BY(support_free) struct support_lists lists = {0};
+        FREED_BY(visibility_free) struct visibility space = {0};
+        FREED_BY(support_free) struct neighbours lists = {0};
         const struct cells none = {.dim = 2, .node_count = 25, .x = x};
         double radius[25];
         GOOD(support_radii(&options, 25, NULL, radius, &error));
-        GOOD(support_space_build(&options, &none, radius, &space, &error));
+        GOOD(visibility_build(&none, radius, options.visibility, options.side, &space, &error));
         GOOD(support_build(&options, &space, NULL, 1, point, "points.x", &lists, &error));
         assert_int_equal(lists.ptr[1], most[i]);
         assert_memory_equal(lists.idx, expected[i], (size_t)most[i] * sizeof(int32_t));

@@ -64,7 +64,7 @@ TEST_IN_EACH_DIM(field_turns_cells_over)
     options.factor = 2.8;
     struct halves halves = make_halves(dim, &options);
     const struct cells *cells = &halves.cells;
-    FREED_BY(support_space_free) struct support_space space = {0};
+    FREED_BY(visibility_free) struct visibility space = {0};
     SCRATCH double *u = NULL, *least = NULL;
     SCRATCH int32_t *cell = NULL;
     ARRAY(u, cells->node_count * dim);
@@ -76,7 +76,7 @@ TEST_IN_EACH_DIM(field_turns_cells_over)
     for (int64_t c = 0; c < cells->count; c++) {
         cell[c] = (int32_t)(cells->count - 1 - c);
     }
-    GOOD(support_space_build(&options, cells, halves.radius, &space, &error));
+    GOOD(visibility_build(cells, halves.radius, options.visibility, options.side, &space, &error));
     GOOD(field_least_determinants(&(struct field_shapes){halves.radius, options, options.mls}, &space,
                                   cells->count, cell, u, least, &error));
     for (int64_t c = 0; c < cells->count; c++) {
@@ -103,12 +103,12 @@ TEST_IN_EACH_DIM(lists_stop_at_the_interface)
     struct support_options options = support_defaults(dim);
     options.widen = false;
     FREED_BY(halves_free) struct halves halves = make_halves(dim, &options);
-    FREED_BY(support_space_free) struct support_space space = {0};
-    FREED_BY(support_free) struct support_lists lists = {0};
+    FREED_BY(visibility_free) struct visibility space = {0};
+    FREED_BY(support_free) struct neighbours lists = {0};
     SCRATCH double *x = scatter_points(dim, COUNT);
     int64_t crossing = 0;
     options.side = halves.side;
-    GOOD(support_space_build(&options, &halves.cells, halves.radius, &space, &error));
+    GOOD(visibility_build(&halves.cells, halves.radius, options.visibility, options.side, &space, &error));
     GOOD(support_build(&options, &space, NULL, COUNT, x, "points", &lists, &error));
     for (int64_t p = 0; p < COUNT; p++) {
         int64_t at = lists.ptr[p];
@@ -131,14 +131,14 @@ TEST_IN_EACH_DIM(places_tell_the_side)
 {
     struct support_options options = support_defaults(dim);
     FREED_BY(halves_free) struct halves halves = make_halves(dim, &options);
-    FREED_BY(support_space_free) struct support_space space = {0};
-    struct support_lists found, given;
+    FREED_BY(visibility_free) struct visibility space = {0};
+    struct neighbours found, given;
     int64_t nodes = halves.cells.node_count, cells = halves.cells.count;
     double *middle = zeros(cells * dim, sizeof *middle);
     int32_t *cell = zeros(cells, sizeof *cell);
     assert_true(middle != NULL && cell != NULL);
     options.side = halves.side;
-    GOOD(support_space_build(&options, &halves.cells, halves.radius, &space, &error));
+    GOOD(visibility_build(&halves.cells, halves.radius, options.visibility, options.side, &space, &error));
     struct visibility_places at_nodes = {.nodes = true}, in_cells = {.cell = cell, .points_per_row = 1};
     for (int64_t c = 0; c < cells; c++) {
         cell_centroid(&halves.cells, c, middle + c * dim);
@@ -193,15 +193,16 @@ TEST(inclusions)
     FREED_BY(halves_free) struct halves halves = make_halves(2, &options);
     struct visibility_places at_nodes = {.nodes = true};
     for (int single = 0; single < 2; single++) {
-        FREED_BY(support_space_free) struct support_space space = {0};
-        FREED_BY(support_free) struct support_lists lists = {0};
+        FREED_BY(visibility_free) struct visibility space = {0};
+        FREED_BY(support_free) struct neighbours lists = {0};
         for (int64_t c = 0; c < halves.cells.count; c++) {
             double middle[2];
             cell_centroid(&halves.cells, c, middle);
             halves.side[c] = single ? c == 40 : fabs(middle[0] - 0.5) < 0.13 && fabs(middle[1] - 0.5) < 0.13;
         }
         options.side = halves.side;
-        GOOD(support_space_build(&options, &halves.cells, halves.radius, &space, &error));
+        GOOD(
+            visibility_build(&halves.cells, halves.radius, options.visibility, options.side, &space, &error));
         GOOD(support_build(&options, &space, &at_nodes, halves.cells.node_count, halves.cells.x, "nodes",
                            &lists, &error));
         assert_true(lists.fewest >= 3);
@@ -213,11 +214,11 @@ TEST(failures_name_the_row)
 {
     struct support_options options = support_defaults(2);
     FREED_BY(halves_free) struct halves halves = make_halves(2, &options);
-    FREED_BY(support_space_free) struct support_space space = {0};
-    struct support_lists lists;
+    FREED_BY(visibility_free) struct visibility space = {0};
+    struct neighbours lists;
     static const double x[] = {0.2, 0.2, 0.8, 0.8, NAN, 0.8, 0.7, 0.7};
     options.side = halves.side;
-    GOOD(support_space_build(&options, &halves.cells, halves.radius, &space, &error));
+    GOOD(visibility_build(&halves.cells, halves.radius, options.visibility, options.side, &space, &error));
     FAILS_WITH(support_build(&options, &space, NULL, 4, x, "points.x", &lists, &error), STATUS_INPUT,
                "points.x: row 2: not a finite coordinate");
     options.least = 1000;

@@ -1,7 +1,7 @@
 /* What supports reach through the cells: convex bodies, gaps, touching bodies, corners and fissures. */
 #include "approx_fixture.h"
 
-#include "approx/visibility/edge_paths.h"
+#include "approx/visibility/visibility.h"
 #include "base/vector.h"
 
 /* A body of unit squares or cubes, each of 2 triangles or 6 tetrahedra. Nodes of the same place and sheet are
@@ -95,12 +95,12 @@ static bool all_solid(const int *cube)
 /* Supports and what they find at points in cells, some of them off the middle. */
 struct found {
     double radius[MOST_NODES];
-    struct support_space space;
+    struct visibility space;
     int64_t count;
     double *x;
     int32_t *cell;
     struct support_options options;
-    struct support_lists lists, nodes;
+    struct neighbours lists, nodes;
 };
 static struct found found;
 
@@ -126,7 +126,8 @@ static void find(double radius, bool widen)
             }
         }
     }
-    GOOD(support_space_build(&found.options, &body.cells, found.radius, &found.space, &error));
+    GOOD(visibility_build(&body.cells, found.radius, found.options.visibility, found.options.side,
+                          &found.space, &error));
     struct visibility_places inside = {.cell = found.cell, .points_per_row = 1};
     GOOD(support_build(&found.options, &found.space, &inside, found.count, found.x, "points", &found.lists,
                        &error));
@@ -137,14 +138,14 @@ static void find(double radius, bool widen)
 
 static void lose(void)
 {
-    support_space_free(&found.space);
+    visibility_free(&found.space);
     support_free(&found.lists);
     support_free(&found.nodes);
     free(found.x);
     free(found.cell);
 }
 
-static bool same_lists(const struct support_lists *a, const struct support_lists *b)
+static bool same_lists(const struct neighbours *a, const struct neighbours *b)
 {
     size_t pairs = (size_t)a->ptr[a->count];
     return a->count == b->count && memcmp(a->ptr, b->ptr, (size_t)(a->count + 1) * sizeof *a->ptr) == 0 &&
@@ -156,12 +157,13 @@ static bool same_lists(const struct support_lists *a, const struct support_lists
 TEST_IN_EACH_DIM(convex)
 {
     for (int wide = 0; wide < 2; wide++) {
-        FREED_BY(support_space_free) struct support_space space = {0};
-        struct support_lists plain;
+        FREED_BY(visibility_free) struct visibility space = {0};
+        struct neighbours plain;
         build(dim, (int[3]){7, 6, 5}, all_solid, one_sheet);
         find(wide ? 2.3 : 0.9, true);
         const struct cells none = {.dim = dim, .node_count = body.node_count, .x = body.x};
-        GOOD(support_space_build(&found.options, &none, found.radius, &space, &error));
+        GOOD(visibility_build(&none, found.radius, found.options.visibility, found.options.side, &space,
+                              &error));
         assert_true(wide || found.lists.widened > 0);
         GOOD(support_build(&found.options, &space, NULL, found.count, found.x, "points", &plain, &error));
         assert_true(same_lists(&plain, &found.lists));
@@ -191,7 +193,7 @@ static int sheet_of_side(const int *cube, int i, int j, int k)
     return cube[0] >= second_from;
 }
 
-static void check_apart(const struct support_lists *lists, const double *x)
+static void check_apart(const struct neighbours *lists, const double *x)
 {
     for (int64_t p = 0; p < lists->count; p++) {
         int own = 0;
@@ -238,7 +240,7 @@ TEST_IN_EACH_DIM(lobes)
     find(2.1, true);
     bool shared_sees_both = false;
     for (int nodes = 0; nodes < 2; nodes++) {
-        const struct support_lists *lists = nodes ? &found.nodes : &found.lists;
+        const struct neighbours *lists = nodes ? &found.nodes : &found.lists;
         const double *x = nodes ? body.x : found.x;
         for (int64_t p = 0; p < lists->count; p++) {
             bool of_first = x[p * dim] + x[p * dim + 1] < 8.0, both = false;

@@ -3,8 +3,7 @@
 #include "approx/cells/parts.h"
 #include "approx/cells/quality.h"
 #include "approx/support/support.h"
-#include "approx/cells/hanging.h"
-#include "approx/cells/thin.h"
+#include "approx/points/select.h"
 #include "base/memory.h"
 
 #include <stdio.h>

@@ -28,7 +28,7 @@ MUST_CHECK enum status cell_report_make(const struct cells *cells, double bound,
 /* "quality 3.1e-05 at (0.01, 0.02, 0.03) m" of a poor cell. */
 const char *cell_report_describe(const struct cells *cells, const struct placed *poor, char text[128]);
 
-/* Tell nodes that hang on facets of other cells (hanging.h) into said[512]: "nodes on ...", or "". *parts:
+/* Tell nodes that hang on facets of other cells (select.h) into said[512]: "nodes on ...", or "". *parts:
  * whether one body parts there. */
 MUST_CHECK enum status cell_report_hanging(const struct cells *cells, int64_t named_count,
                                            const int32_t *named, bool *parts, char said[512],

@@ -52,8 +52,8 @@ struct run_folds {
     double *field;       /* scratch: node_count * dim */
     int64_t *node_first; /* the nodes at which each process evaluates it */
     bool has_space;
-    struct support_space space; /* for the field within cells, made when it is needed */
-    bool reported;              /* in the message that ends the run */
+    struct visibility space; /* for the field within cells, made when it is needed */
+    bool reported;           /* in the message that ends the run */
     /* The fold that was found last, or one that stays. */
     bool seen;
     bool stays;   /* it is in a state that is given, or the run is dynamic */

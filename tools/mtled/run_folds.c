@@ -99,7 +99,7 @@ void run_folds_free(struct run *run)
 {
     folds_free(&run->folds.folds);
     FREE_ALL(run->folds.field, run->folds.node_first);
-    support_space_free(&run->folds.space);
+    visibility_free(&run->folds.space);
 }
 
 /* A surface counts as in contact if it is no further away than this share of a facet's size. */
@@ -132,7 +132,8 @@ static enum status find_upright_cells(struct run *run, int64_t count, const int3
         return STATUS_OK;
     }
     if (!folds->has_space) {
-        RETURN_IF_ERROR(support_space_build(&recorded.support, cells, recorded.radius, &folds->space, error));
+        RETURN_IF_ERROR(visibility_build(cells, recorded.radius, recorded.support.visibility,
+                                         recorded.support.side, &folds->space, error));
         folds->has_space = true;
     }
     NEW_SCRATCH(double, least, count, error);

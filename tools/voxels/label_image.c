@@ -104,8 +104,8 @@ static void label_values(const struct tool *tool, struct values *values, struct 
         image->volume[name] += (double)values->voxels[v] * image->voxel_volume;
     }
     for (int32_t l = 1; l < image->labels.count; l++) {
-        kept = kept || image->keep[l];
-        if (image->volume[l] == 0 && image->keep[l]) {
+        kept = kept || image->table.kept[l];
+        if (image->volume[l] == 0 && image->table.kept[l]) {
             tool_fail(tool, STATUS_INPUT, "'%s' is empty: no voxel has a label of that name",
                       image->table.names.name[l]);
         }
@@ -126,16 +126,14 @@ static void set_labels(const struct tool *tool, const struct image *source, stru
         name_values(tool, source, values, &image->table);
     }
     image->labels.count = (int32_t)image->table.names.count;
-    image->keep = image->table.kept;
     TOOL_TRY(tool, NEW_ARRAY(&image->volume, image->labels.count, &error));
-    TOOL_TRY(tool, NEW_ARRAY(&image->voxel, count, &error));
+    TOOL_TRY(tool, NEW_ARRAY(&image->labels.label, count, &error));
     label_values(tool, values, image, table);
     int32_t at = 0;
     for (int64_t i = 0; i < count; i++) {
         at = place_of(values, (int64_t)source->values[i], at);
-        image->voxel[i] = values->label[at];
+        image->labels.label[i] = values->label[at];
     }
-    image->labels.label = image->voxel;
 }
 
 /* ---- space ---- */
@@ -234,7 +232,7 @@ static void note_border(const struct tool *tool, const struct label_image *image
         for (int d = 0; d < 3; d++) {
             border = border || (size[d] > 1 && (at[d] == 0 || at[d] == size[d] - 1));
         }
-        label = border && image->keep[image->voxel[v]] ? image->voxel[v] : 0;
+        label = border && image->table.kept[image->labels.label[v]] ? image->labels.label[v] : 0;
     }
     if (label != 0) {
         tool_note(tool, "%s reaches the border of the image: the body ends there",
@@ -333,7 +331,7 @@ void label_image_read(const struct tool *tool, struct label_image *image)
 
 void label_image_free(struct label_image *image)
 {
-    FREE_ALL(image->voxel, image->volume);
+    FREE_ALL(image->labels.label, image->volume);
     label_table_free(&image->table);
     *image = (struct label_image){0};
 }

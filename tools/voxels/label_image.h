@@ -12,9 +12,7 @@
 
 struct label_image {
     struct labels labels;
-    uint16_t *voxel;          /* the array of labels.label */
     struct label_table table; /* label l is table.names.name[l] */
-    bool *keep;               /* labels.count: table.kept */
     double *volume;           /* labels.count: of its voxels, m3 (2D: m2) */
     double voxel_volume;
 };
@@ -44,8 +42,8 @@ struct label_surface_options {
 void label_surface_parse(const struct tool *tool, const struct label_image *image,
                          struct label_surface_options *options);
 
-/* Write the facets to tool->output or standard output, m. 3D: the corners of a triangle in each row, with the
- * right-hand normal outward from A. 2D: curves with A on the left, a point in each row, a blank line between
- * curves. Exits on failure, also if there is no such facet. */
-void label_surface_write(const struct tool *tool, const struct label_cells *mesh,
+/* Write the facets, of which mesh keeps no others, to tool->output or standard output, m. 3D: the corners of
+ * a triangle in each row, with the right-hand normal outward from A. 2D: curves with A on the left, a point
+ * in each row, a blank line between curves. Exits on failure, also if there is no such facet. */
+void label_surface_write(const struct tool *tool, struct label_cells *mesh,
                          const struct label_surface_options *options);

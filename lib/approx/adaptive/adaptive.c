@@ -1,8 +1,7 @@
 #include "approx/adaptive/adaptive.h"
 
 #include "approx/cells/quadrature.h"
-#include "approx/shape/shape.h"
-#include "approx/support/support.h"
+#include "approx/field/field.h"
 #include "base/lists.h"
 #include "base/memory.h"
 #include "base/vector.h"
@@ -19,29 +18,20 @@ struct leaf {
     double vertex[12]; /* (dim + 1) * dim */
 };
 
-/* In order of the cells, within a cell in order of the subdivision. */
-struct leaves {
-    int64_t count;
-    struct leaf *leaf;
-};
-
-static void leaves_free(struct leaves *leaves)
-{
-    free(leaves->leaf);
-}
-
-/* The input of the refinement. */
+/* The refinement, and its subcells in order of the cells, within a cell in order of the subdivision. */
 struct refinement {
     const struct adaptive_options *options;
-    struct support_space space;
+    struct visibility space;
     struct quadrature_rule rule;
     double *norm; /* |K| of each cell, by the rule on the whole cell */
+    int64_t count;
+    struct leaf *leaf; /* count */
 };
 
 static void refinement_free(struct refinement *refinement)
 {
-    support_space_free(&refinement->space);
-    free(refinement->norm);
+    visibility_free(&refinement->space);
+    FREE_ALL(refinement->norm, refinement->leaf);
 }
 
 /* Number of subcells that are measured at once. It bounds the memory and does not affect the result. */
@@ -77,52 +67,30 @@ static void place_child(int dim, const double *vertex, int child, double *of_chi
     }
 }
 
-/* Points of a subcell's own rule and of its children's, with their signs in the difference. */
-struct sample {
-    int64_t per_leaf;
-    int32_t cell[BATCH_LEAVES];
-    double *x;
-    struct support_lists lists;
-    double *phi, *dphi;
-};
-
-static void sample_free(struct sample *sample)
-{
-    free(sample->x);
-    support_free(&sample->lists);
-    FREE_ALL(sample->phi, sample->dphi);
-}
-
+/* The shape functions at the points of each subcell's own rule, then of its children's. */
 static enum status sample_leaves(const struct refinement *refinement, struct leaf *const *leaf, int64_t count,
-                                 struct sample *sample, struct error *error)
+                                 struct field_table *sample, struct error *error)
 {
-    const struct cells *cells = &refinement->space.cells;
-    const struct mls *mls = &refinement->options->support.mls;
-    int dim = cells->dim, per_rule = refinement->rule.points;
-    sample->per_leaf = per_rule * (1 + children_of(dim));
-    int64_t points = count * sample->per_leaf;
-    RETURN_IF_ERROR(NEW_ARRAY(&sample->x, points * dim, error));
-    double *x = sample->x;
-    for (int64_t l = 0; l < count; l++) {
-        sample->cell[l] = leaf[l]->cell;
-        quadrature_positions(&refinement->rule, dim, leaf[l]->vertex, in_order, x);
-        x += per_rule * dim;
-        for (int child = 0; child < children_of(dim); child++) {
-            double vertex[12];
-            place_child(dim, leaf[l]->vertex, child, vertex);
-            quadrature_positions(&refinement->rule, dim, vertex, in_order, x);
-            x += per_rule * dim;
+    const struct support_options *support = &refinement->options->support;
+    const struct field_shapes shapes = {.support = *support, .shapes = support->mls};
+    int dim = refinement->space.cells.dim, rules = 1 + children_of(dim);
+    int64_t per_rule = refinement->rule.points, per_leaf = per_rule * rules;
+    int32_t cell[BATCH_LEAVES];
+    NEW_SCRATCH(double, x, count * per_leaf * dim, error);
+    for (int64_t i = 0; i < count * rules; i++) {
+        double vertex[12];
+        int child = (int)(i % rules) - 1;
+        const struct leaf *own = leaf[i / rules];
+        cell[i / rules] = own->cell;
+        if (child >= 0) {
+            place_child(dim, own->vertex, child, vertex);
         }
+        quadrature_positions(&refinement->rule, dim, child >= 0 ? vertex : own->vertex, in_order,
+                             x + i * per_rule * dim);
     }
-    struct visibility_places places = {.cell = sample->cell, .points_per_row = sample->per_leaf};
-    RETURN_IF_ERROR(support_build(&refinement->options->support, &refinement->space, &places, points,
-                                  sample->x, "adaptive points", &sample->lists, error));
-    int64_t pairs = sample->lists.ptr[points];
-    RETURN_IF_ERROR(NEW_ARRAY(&sample->phi, pairs, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&sample->dphi, pairs * dim, error));
-    struct neighbours lists = support_view(&sample->lists);
-    return shape_table(mls, cells->x, refinement->space.radius, &lists, sample->x, "adaptive points",
-                       sample->phi, sample->dphi, error);
+    struct visibility_places places = {.cell = cell, .points_per_row = per_leaf};
+    return field_table_at(&shapes, &refinement->space, &places, count * per_leaf, x, "adaptive points", true,
+                          sample, error);
 }
 
 /* matrix (n x n, lower half) += factor G G^T. Row i of G belongs to row place[i] of the matrix. */
@@ -157,7 +125,7 @@ static double norm_of(const double *matrix, int64_t n)
 
 /* united[] = the union of the lists of the points [first, last), ascending; it has room for all of their
  * entries. */
-static int64_t unite(const struct support_lists *lists, int64_t first, int64_t last, int64_t *united)
+static int64_t unite(const struct neighbours *lists, int64_t first, int64_t last, int64_t *united)
 {
     int64_t count = 0;
     for (int64_t i = lists->ptr[first]; i < lists->ptr[last]; i++) {
@@ -167,12 +135,12 @@ static int64_t unite(const struct support_lists *lists, int64_t first, int64_t l
 }
 
 /* *norm = |K| by the rule on a subcell, *change = |K - K by the rule on its children|. */
-static enum status measure(const struct refinement *refinement, const struct sample *sample, int64_t leaf,
-                           double volume, double *norm, double *change, struct error *error)
+static enum status measure(const struct refinement *refinement, const struct field_table *sample,
+                           int64_t leaf, double volume, double *norm, double *change, struct error *error)
 {
-    const struct support_lists *lists = &sample->lists;
+    const struct neighbours *lists = &sample->lists;
     int dim = refinement->space.cells.dim, per_rule = refinement->rule.points;
-    int64_t first = leaf * sample->per_leaf, last = first + sample->per_leaf;
+    int64_t per_leaf = per_rule * (1 + children_of(dim)), first = leaf * per_leaf, last = first + per_leaf;
     int64_t pairs = lists->ptr[last] - lists->ptr[first];
     NEW_SCRATCH(int64_t, united, pairs, error);
     NEW_SCRATCH(int32_t, place, pairs, error);
@@ -200,7 +168,7 @@ static enum status measure_batch(struct refinement *refinement, struct leaf *con
                                  struct error *error)
 {
     struct first_failure failure = {STATUS_OK};
-    FREED_BY(sample_free) struct sample sample = {0};
+    FREED_BY(field_table_free) struct field_table sample = {0};
     RETURN_IF_ERROR(sample_leaves(refinement, leaf, count, &sample, error));
 #pragma omp parallel for schedule(dynamic, 4)
     for (int64_t l = 0; l < count; l++) {
@@ -219,15 +187,15 @@ static enum status measure_batch(struct refinement *refinement, struct leaf *con
 }
 
 /* Measure the subcells that have not been measured; those of level 0 also set the norm of their cell. */
-static enum status measure_new(struct refinement *refinement, struct leaves *leaves, struct error *error)
+static enum status measure_new(struct refinement *refinement, struct error *error)
 {
     struct leaf *batch[BATCH_LEAVES];
     int64_t count = 0;
-    for (int64_t l = 0; l < leaves->count; l++) {
-        if (!leaves->leaf[l].measured) {
-            batch[count++] = &leaves->leaf[l];
+    for (int64_t l = 0; l < refinement->count; l++) {
+        if (!refinement->leaf[l].measured) {
+            batch[count++] = &refinement->leaf[l];
         }
-        if (count == BATCH_LEAVES || (count > 0 && l == leaves->count - 1)) {
+        if (count == BATCH_LEAVES || (count > 0 && l == refinement->count - 1)) {
             RETURN_IF_ERROR(measure_batch(refinement, batch, count, error));
             count = 0;
         }
@@ -287,15 +255,15 @@ static enum status mark_cell(const struct adaptive_options *options, struct leaf
 }
 
 /* Replace the marked subcells by their children. */
-static enum status split(int dim, int64_t marked, struct leaves *leaves, struct error *error)
+static enum status split(struct refinement *refinement, int64_t marked, struct error *error)
 {
-    int children = children_of(dim);
-    int64_t count = leaves->count + marked * (children - 1);
+    int dim = refinement->space.cells.dim, children = children_of(dim);
+    int64_t count = refinement->count + marked * (children - 1);
     struct leaf *next;
     RETURN_IF_ERROR(NEW_ARRAY(&next, count, error));
     struct leaf *at = next;
-    for (int64_t l = 0; l < leaves->count; l++) {
-        const struct leaf *leaf = &leaves->leaf[l];
+    for (int64_t l = 0; l < refinement->count; l++) {
+        const struct leaf *leaf = &refinement->leaf[l];
         if (!leaf->split) {
             *at++ = *leaf;
             continue;
@@ -305,20 +273,20 @@ static enum status split(int dim, int64_t marked, struct leaves *leaves, struct 
             place_child(dim, leaf->vertex, child, at->vertex);
         }
     }
-    free(leaves->leaf);
-    leaves->leaf = next;
-    leaves->count = count;
+    free(refinement->leaf);
+    refinement->leaf = next;
+    refinement->count = count;
     return STATUS_OK;
 }
 
 /* One subcell for each cell. */
-static enum status start(const struct cells *cells, struct leaves *leaves, struct error *error)
+static enum status start(const struct cells *cells, struct refinement *refinement, struct error *error)
 {
     int dim = cells->dim, vertices = dim + 1;
-    RETURN_IF_ERROR(NEW_ARRAY(&leaves->leaf, cells->count, error));
-    leaves->count = cells->count;
+    RETURN_IF_ERROR(NEW_ARRAY(&refinement->leaf, cells->count, error));
+    refinement->count = cells->count;
     for (int64_t c = 0; c < cells->count; c++) {
-        struct leaf *leaf = &leaves->leaf[c];
+        struct leaf *leaf = &refinement->leaf[c];
         leaf->cell = (int32_t)c;
         for (int i = 0; i < vertices * dim; i++) {
             leaf->vertex[i] = cells->x[(int64_t)cells->node[c * vertices + i / dim] * dim + i % dim];
@@ -328,17 +296,17 @@ static enum status start(const struct cells *cells, struct leaves *leaves, struc
 }
 
 /* Mark the subcells to be split in all cells. */
-static enum status mark(const struct refinement *refinement, const struct leaves *leaves, int64_t *marked,
-                        int64_t *unresolved, struct error *error)
+static enum status mark(const struct refinement *refinement, int64_t *marked, int64_t *unresolved,
+                        struct error *error)
 {
     *marked = *unresolved = 0;
-    for (int64_t begin = 0, end = 0; begin < leaves->count; begin = end) {
+    for (int64_t begin = 0, end = 0; begin < refinement->count; begin = end) {
         bool stuck;
-        int32_t cell = leaves->leaf[begin].cell;
-        while (end < leaves->count && leaves->leaf[end].cell == cell) {
+        int32_t cell = refinement->leaf[begin].cell;
+        while (end < refinement->count && refinement->leaf[end].cell == cell) {
             end++;
         }
-        RETURN_IF_ERROR(mark_cell(refinement->options, leaves->leaf + begin, end - begin,
+        RETURN_IF_ERROR(mark_cell(refinement->options, refinement->leaf + begin, end - begin,
                                   refinement->norm[cell], marked, &stuck, error));
         *unresolved += stuck;
     }
@@ -346,12 +314,12 @@ static enum status mark(const struct refinement *refinement, const struct leaves
 }
 
 /* Place the rule's points in all subcells. */
-static enum status place_points(const struct refinement *refinement, const struct leaves *leaves,
-                                struct adaptive_points *points, struct error *error)
+static enum status place_points(const struct refinement *refinement, struct adaptive_points *points,
+                                struct error *error)
 {
     const struct quadrature_rule *rule = &refinement->rule;
     int dim = refinement->space.cells.dim;
-    points->count = leaves->count * rule->points;
+    points->count = refinement->count * rule->points;
     if (points->count > INT32_MAX) {
         return fail(error, STATUS_INPUT,
                     "%lld adaptive points: more than 2^31 - 1: a larger tolerance or fewer "
@@ -361,8 +329,8 @@ static enum status place_points(const struct refinement *refinement, const struc
     RETURN_IF_ERROR(NEW_ARRAY(&points->x, points->count * dim, error));
     RETURN_IF_ERROR(NEW_ARRAY(&points->weight, points->count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&points->cell, points->count, error));
-    for (int64_t l = 0; l < leaves->count; l++) {
-        const struct leaf *leaf = &leaves->leaf[l];
+    for (int64_t l = 0; l < refinement->count; l++) {
+        const struct leaf *leaf = &refinement->leaf[l];
         int64_t first = l * rule->points;
         double volume = ldexp(cell_volume(&refinement->space.cells, leaf->cell), -dim * leaf->level);
         quadrature_positions(rule, dim, leaf->vertex, in_order, points->x + first * dim);
@@ -378,19 +346,19 @@ enum status adaptive_points_build(const struct adaptive_options *options, const 
                                   const double *radius, struct adaptive_points *points, struct error *error)
 {
     FREED_BY(refinement_free) struct refinement refinement = {.options = options};
-    FREED_BY(leaves_free) struct leaves leaves = {0};
     int64_t marked;
     *points = (struct adaptive_points){0};
     RETURN_IF_ERROR(quadrature_cell_rule(cells->dim, options->rule_points, &refinement.rule, error));
-    RETURN_IF_ERROR(support_space_build(&options->support, cells, radius, &refinement.space, error));
+    RETURN_IF_ERROR(visibility_build(cells, radius, options->support.visibility, options->support.side,
+                                     &refinement.space, error));
     RETURN_IF_ERROR(NEW_ARRAY(&refinement.norm, cells->count, error));
-    RETURN_IF_ERROR(start(cells, &leaves, error));
+    RETURN_IF_ERROR(start(cells, &refinement, error));
     do {
-        RETURN_IF_ERROR(measure_new(&refinement, &leaves, error));
-        RETURN_IF_ERROR(mark(&refinement, &leaves, &marked, &points->unresolved, error));
-        RETURN_IF_ERROR(split(cells->dim, marked, &leaves, error));
+        RETURN_IF_ERROR(measure_new(&refinement, error));
+        RETURN_IF_ERROR(mark(&refinement, &marked, &points->unresolved, error));
+        RETURN_IF_ERROR(split(&refinement, marked, error));
     } while (marked > 0);
-    return place_points(&refinement, &leaves, points, error);
+    return place_points(&refinement, points, error);
 }
 
 void adaptive_points_free(struct adaptive_points *points)

@@ -74,3 +74,17 @@ MUST_CHECK enum status cells_across(const struct cells *cells, int32_t *across, 
 
 /* spacing[node_count]: mean length of the cell edges at each node; 0 at nodes of no cell. */
 MUST_CHECK enum status cells_node_spacing(const struct cells *cells, double *spacing, struct error *error);
+
+/* owner[size[0] * size[1] * size[2]], first axis fastest: the lowest cell that contains the grid point, or
+ * -1. cells->x are in units of the grid, whose points have integer coordinates from 0; size[2] = 1 in 2D.
+ * Only cells whose determinant has the sign `sign` (1 or -1) count: -1 if the map to the grid mirrors; the
+ * others are inverted. *doubly: number of grid points inside more than one cell, faces excepted. Threaded;
+ * the result does not depend on the number of threads. */
+void raster_cells(const struct cells *cells, int sign, const int64_t size[3], int32_t *owner,
+                  int64_t *doubly);
+
+/* order[count]: the indices of x[count * dim] in the order of a Morton (Z) curve, in which what is used in
+ * succession is close together in memory; equal points in the order given. With group[count], unless NULL,
+ * lower groups come first. */
+MUST_CHECK enum status renumber_morton(int dim, int64_t count, const double *x, const int32_t *group,
+                                       int64_t *order, struct error *error);

@@ -48,14 +48,15 @@ static enum status parts_begin(int64_t items, int32_t **parent, double **size, s
 
 enum status cells_parts(const struct cells *cells, int32_t *part, int32_t *count, struct error *error)
 {
-    FREED_BY(faces_free) struct faces faces = {0};
+    int corners = cells->dim + 1;
     SCRATCH int32_t *parent = NULL;
     SCRATCH double *volume = NULL;
+    NEW_SCRATCH(int32_t, across, cells->count * corners, error);
     RETURN_IF_ERROR(parts_begin(cells->count, &parent, &volume, error));
-    RETURN_IF_ERROR(faces_build(cells, false, &faces, error));
-    for (int64_t f = 0; f < faces.count; f++) {
-        if (faces.cell[2 * f + 1] >= 0) {
-            set_join(parent, faces.cell[2 * f], faces.cell[2 * f + 1]);
+    RETURN_IF_ERROR(cells_across(cells, across, error));
+    for (int64_t i = 0; i < cells->count * corners; i++) {
+        if (across[i] >= 0) {
+            set_join(parent, (int32_t)(i / corners), across[i]);
         }
     }
     for (int64_t c = 0; c < cells->count; c++) {

@@ -16,8 +16,9 @@ struct orbits {
 
 /* Dunavant 1985 (triangles of 6, 7, 12 points: degrees 4, 5, 6); Hammer and Stroud 1956 and Walkington 2000
  * (tetrahedra of 4, 8, 14 points: degrees 2, 3, 5); a triangle of 4 points: the centroids of the four
- * sub-triangles. */
-static const struct orbits cell_rules[] = {
+ * sub-triangles. Of an edge the two points of Gauss. */
+static const struct orbits rules[] = {
+    {2, 2, {{"ab ba", 0.5, {0.78867513459481287, 0.21132486540518713}}}},
     {1, 3, {{"aaa", 1.0, {1.0 / 3.0}}}},
     {3, 3, {{"abb bab bba", 0.33333333333333331, {0.66666666666666674, 0.16666666666666666}}}},
     {4,
@@ -68,33 +69,31 @@ static void put_orbits(const struct orbits *orbits, struct quadrature_rule *rule
     }
 }
 
-enum status quadrature_cell_rule(int dim, int points, struct quadrature_rule *rule, struct error *error)
+/* False if there is none. */
+static bool find_rule(int vertices, int points, struct quadrature_rule *rule)
 {
-    for (size_t i = 0; i < sizeof cell_rules / sizeof *cell_rules; i++) {
-        if (cell_rules[i].vertices == dim + 1 && cell_rules[i].points == points) {
-            put_orbits(&cell_rules[i], rule);
-            return STATUS_OK;
+    for (size_t i = 0; i < sizeof rules / sizeof *rules; i++) {
+        if (rules[i].vertices == vertices && rules[i].points == points) {
+            put_orbits(&rules[i], rule);
+            return true;
         }
     }
-    return fail(error, STATUS_INPUT, "no rule of %d points; there are %s", points,
-                dim == 2 ? "1, 3, 4, 6, 7 and 12 for triangles" : "1, 4, 8 and 14 for tetrahedra");
+    return false;
+}
+
+enum status quadrature_cell_rule(int dim, int points, struct quadrature_rule *rule, struct error *error)
+{
+    return find_rule(dim + 1, points, rule)
+               ? STATUS_OK
+               : fail(error, STATUS_INPUT, "no rule of %d points; there are %s", points,
+                      dim == 2 ? "1, 3, 4, 6, 7 and 12 for triangles" : "1, 4, 8 and 14 for tetrahedra");
 }
 
 struct quadrature_rule quadrature_face_rule(int dim)
 {
-    static const struct quadrature_rule edge = {
-        2,
-        2,
-        {0.78867513459481287, 0.21132486540518713, 0.21132486540518713, 0.78867513459481287},
-        {0.5, 0.5}};
-    static const struct quadrature_rule triangle = {
-        3,
-        3,
-        {0.66666666666666674, 0.16666666666666666, 0.16666666666666666, 0.16666666666666666,
-         0.66666666666666674, 0.16666666666666666, 0.16666666666666666, 0.16666666666666666,
-         0.66666666666666674},
-        {0.33333333333333331, 0.33333333333333331, 0.33333333333333331}};
-    return dim == 2 ? edge : triangle;
+    struct quadrature_rule rule;
+    (void)find_rule(dim, dim, &rule);
+    return rule;
 }
 
 void quadrature_positions(const struct quadrature_rule *rule, int dim, const double *nodes,

@@ -1,4 +1,4 @@
-#include "approx/cells/raster.h"
+#include "approx/cells/cells.h"
 
 #include "base/round_off.h"
 #include "base/vector.h"

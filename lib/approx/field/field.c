@@ -69,7 +69,7 @@ enum status field_outside(const struct cells *cells, const double *spacing, doub
     return STATUS_OK;
 }
 
-enum status field_table_at(const struct field_shapes *shapes, const struct support_space *space,
+enum status field_table_at(const struct field_shapes *shapes, const struct visibility *space,
                            const struct visibility_places *places, int64_t count, const double *x,
                            const char *what, bool gradients, struct field_table *table, struct error *error)
 {
@@ -79,18 +79,18 @@ enum status field_table_at(const struct field_shapes *shapes, const struct suppo
     if (gradients) {
         RETURN_IF_ERROR(NEW_ARRAY(&table->dphi, table->lists.ptr[count] * space->cells.dim, error));
     }
-    struct neighbours lists = support_view(&table->lists);
-    return shape_table(&shapes->shapes, space->cells.x, space->radius, &lists, x, what, table->phi,
-                       table->dphi, error);
+    return shape_table(&shapes->shapes, space->cells.x, space->grid.radius, &table->lists, x, what,
+                       table->phi, table->dphi, error);
 }
 
 enum status field_table_build(const struct field_shapes *shapes, const struct cells *cells, int64_t count,
                               const double *x, const char *what, struct field_table *table,
                               struct error *error)
 {
-    FREED_BY(support_space_free) struct support_space space = {0};
+    FREED_BY(visibility_free) struct visibility space = {0};
     *table = (struct field_table){0};
-    RETURN_IF_ERROR(support_space_build(&shapes->support, cells, shapes->radius, &space, error));
+    RETURN_IF_ERROR(visibility_build(cells, shapes->radius, shapes->support.visibility, shapes->support.side,
+                                     &space, error));
     return field_table_at(shapes, &space, NULL, count, x, what, false, table, error);
 }
 
@@ -133,35 +133,16 @@ static void interpolate_in_cell(const struct cells *cells, int64_t cell, int64_t
     }
 }
 
-/* result[count * cols] at x[count * dim], in the cells that contain the points `within`, or are nearest to
- * them; that of the nearest cell is continued. */
-static enum status interpolate(const struct cells *cells, int64_t cols, const double *values, int64_t count,
-                               const double *within, const double *x, double *result, struct error *error)
-{
-    if (cells->count == 0) {
-        return fail(error, STATUS_INPUT, "no cells, within which the field is interpolated");
-    }
-    NEW_SCRATCH(double, spacing, cells->node_count, error);
-    NEW_SCRATCH(int64_t, cell, count, error);
-    RETURN_IF_ERROR(field_spacing(cells, spacing, error));
-    RETURN_IF_ERROR(find_nearest(cells, spacing, FIELD_MARGIN, count, within, cell, error));
-    for (int64_t p = 0; p < count; p++) {
-        if (cell[p] < 0) {
-            char place[96];
-            point_text(cells->dim, x + p * cells->dim, place);
-            return fail(error, STATUS_INPUT, "node %lld at %s is far from all its cells", (long long)p,
-                        place);
-        }
-        interpolate_in_cell(cells, cell[p], cols, values, x + p * cells->dim, result + p * cols);
-    }
-    return STATUS_OK;
-}
-
 enum status field_carry(const struct cells *from, int64_t cols, const double *values, const struct cells *to,
                         double *result, struct error *error)
 {
     int dim = to->dim;
+    if (from->count == 0) {
+        return fail(error, STATUS_INPUT, "no cells, within which the field is interpolated");
+    }
     NEW_SCRATCH(double, within, to->node_count * dim, error);
+    NEW_SCRATCH(double, spacing, from->node_count, error);
+    NEW_SCRATCH(int64_t, cell, to->node_count, error);
     memcpy(within, to->x, (size_t)(to->node_count * dim) * sizeof *within);
     for (int64_t i = to->count * (dim + 1) - 1; i >= 0; i--) { /* towards the middle of its first cell */
         double middle[3];
@@ -169,7 +150,17 @@ enum status field_carry(const struct cells *from, int64_t cols, const double *va
         cell_centroid(to, i / (dim + 1), middle);
         vector_between(dim, to->x + node * dim, middle, into_cell, within + node * dim);
     }
-    return interpolate(from, cols, values, to->node_count, within, to->x, result, error);
+    RETURN_IF_ERROR(field_spacing(from, spacing, error));
+    RETURN_IF_ERROR(find_nearest(from, spacing, FIELD_MARGIN, to->node_count, within, cell, error));
+    for (int64_t n = 0; n < to->node_count; n++) {
+        const double *x = to->x + n * dim;
+        if (cell[n] < 0) {
+            return fail(error, STATUS_INPUT, "node %lld at %s is far from all its cells", (long long)n,
+                        POINT_TEXT(dim, x));
+        }
+        interpolate_in_cell(from, cell[n], cols, values, x, result + n * cols);
+    }
+    return STATUS_OK;
 }
 
 /* x[FIELD_TURNING_POINTS * dim]: the points within a cell whose barycentric coordinates are sixth[] / 6. */
@@ -205,7 +196,7 @@ static double determinant_at(int dim, const struct field_table *table, int64_t p
     return dim == 2 ? determinant2(F[0], F[1]) : determinant3(F[0], F[1], F[2]);
 }
 
-enum status field_least_determinants(const struct field_shapes *shapes, const struct support_space *space,
+enum status field_least_determinants(const struct field_shapes *shapes, const struct visibility *space,
                                      int64_t count, const int32_t *cell, const double *u, double *least,
                                      struct error *error)
 {

@@ -49,7 +49,7 @@ MUST_CHECK enum status field_carry(const struct cells *from, int64_t cols, const
 
 /* Lists, values and gradients of shape functions at points. */
 struct field_table {
-    struct support_lists lists;
+    struct neighbours lists;
     double *phi;  /* lists.ptr[lists.count] */
     double *dphi; /* lists.ptr[lists.count] * dim, 1/m; NULL: not wanted */
 };
@@ -58,7 +58,7 @@ struct field_table {
  * cells, neighbours are those visible through them (visibility.h). Nodal values are taken as the parameters
  * of the approximation, u_h = sum_j phi_j u_j; linear fields (quadratic ones with mls2) are reproduced.
  * `what` names the points in messages. */
-MUST_CHECK enum status field_table_at(const struct field_shapes *shapes, const struct support_space *space,
+MUST_CHECK enum status field_table_at(const struct field_shapes *shapes, const struct visibility *space,
                                       const struct visibility_places *places, int64_t count, const double *x,
                                       const char *what, bool gradients, struct field_table *table,
                                       struct error *error);
@@ -86,6 +86,6 @@ enum { FIELD_TURNING_POINTS = 10 };
 /* least[count]: the least determinant at the points within each cell of cell[count]; NaN if u is not finite.
  * u[node_count * dim]: parameters of the field, m. Errors: as support_build and shape_table. */
 MUST_CHECK enum status field_least_determinants(const struct field_shapes *shapes,
-                                                const struct support_space *space, int64_t count,
+                                                const struct visibility *space, int64_t count,
                                                 const int32_t *cell, const double *u, double *least,
                                                 struct error *error);

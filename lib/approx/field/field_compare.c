@@ -10,30 +10,27 @@
 #include <stdlib.h>
 #include <string.h>
 
-static bool same_place(int dim, const double *a, const double *b, double tolerance)
-{
-    for (int axis = 0; axis < dim; axis++) {
-        if (!(fabs(a[axis] - b[axis]) <= tolerance)) {
-            return false;
-        }
-    }
-    return true;
-}
-
-/* Match nodes in any order by a grid. */
-static enum status match_any_order(int dim, int64_t count, const double *a, const double *b, double tolerance,
-                                   int32_t *match, bool *matched, struct error *error)
+/* match[a_count]: for each node of cloud A the node of cloud B at the same place, within 1e-9 of the larger
+ * extent of the clouds; each is used once. *matched: false if the counts differ or a node of A has none;
+ * match[] is then undefined. */
+static enum status match_nodes(int dim, int64_t a_count, const double *a, int64_t b_count, const double *b,
+                               int32_t *match, bool *matched, struct error *error)
 {
     FREED_BY(point_grid_free) struct point_grid grid = {0};
     FREED_BY(index_list_free) struct index_list list = {0};
-    NEW_SCRATCH(double, radius, count, error);
-    NEW_SCRATCH(char, used, count, error);
-    for (int64_t n = 0; n < count; n++) {
-        radius[n] = tolerance * sqrt((double)dim);
+    struct box box = box_of(dim, a_count, a);
+    box_add(&box, b_count, b);
+    *matched = a_count == b_count;
+    if (!*matched) {
+        return STATUS_OK;
     }
-    RETURN_IF_ERROR(point_grid_build(&grid, dim, count, b, radius, error));
-    *matched = true;
-    for (int64_t n = 0; n < count && *matched; n++) {
+    NEW_SCRATCH(double, radius, b_count, error);
+    NEW_SCRATCH(bool, used, b_count, error);
+    for (int64_t n = 0; n < b_count; n++) {
+        radius[n] = fmax(1e-9 * box_side(&box) * sqrt((double)dim), 1e-100);
+    }
+    RETURN_IF_ERROR(point_grid_build(&grid, dim, b_count, b, radius, error));
+    for (int64_t n = 0; n < a_count && *matched; n++) {
         list.count = 0;
         RETURN_IF_ERROR(point_grid_query(&grid, a + n * dim, 1.0, &list, error));
         int64_t at = 0;
@@ -43,41 +40,10 @@ static enum status match_any_order(int dim, int64_t count, const double *a, cons
         *matched = at < list.count;
         if (*matched) {
             match[n] = list.index[at];
-            used[match[n]] = 1;
+            used[match[n]] = true;
         }
     }
     return STATUS_OK;
-}
-
-/* match[a_count]: for each node of cloud A the node of cloud B at the same place, within 1e-9 of the larger
- * extent of the clouds; each is used once. *matched: false if the counts differ or a node of A has none;
- * match[] is then undefined. */
-static enum status match_nodes(int dim, int64_t a_count, const double *a, int64_t b_count, const double *b,
-                               int32_t *match, bool *matched, struct error *error)
-{
-    struct box box = box_of(dim, a_count, a);
-    box_add(&box, b_count, b);
-    double tolerance = 1e-9 * box_side(&box);
-    *matched = a_count == b_count;
-    if (!*matched) {
-        return STATUS_OK;
-    }
-    for (int64_t n = 0; n < a_count && *matched; n++) {
-        match[n] = (int32_t)n;
-        *matched = same_place(dim, a + n * dim, b + n * dim, tolerance);
-    }
-    if (*matched || !(tolerance > 0.0)) {
-        return STATUS_OK;
-    }
-    return match_any_order(dim, a_count, a, b, tolerance, match, matched, error);
-}
-
-/* difference[i] = |a_i - b_i|, Euclidean over the columns; not finite wherever a value is not. */
-static void differences(int64_t count, int64_t cols, const double *a, const double *b, double *difference)
-{
-    for (int64_t i = 0; i < count; i++) {
-        difference[i] = vector_distance((int)cols, a + i * cols, b + i * cols);
-    }
 }
 
 double field_largest(int64_t count, int64_t cols, const double *field)
@@ -161,11 +127,9 @@ static enum status drop_outside(const struct nodal_field *a, const struct nodal_
     comparison->outside = comparison->count - kept;
     comparison->count = kept;
     if (comparison->outside > 0 && !skip) {
-        char place[96];
-        point_text(dim, a->cells.x + first * dim, place);
-        return fail(error, STATUS_INPUT,
-                    "%lld nodes of A lie outside of B's cloud, the first is row %lld at %s",
-                    (long long)comparison->outside, (long long)first, place);
+        return fail(
+            error, STATUS_INPUT, "%lld nodes of A lie outside of B's cloud, the first is row %lld at %s",
+            (long long)comparison->outside, (long long)first, POINT_TEXT(dim, a->cells.x + first * dim));
     }
     return STATUS_OK;
 }
@@ -226,7 +190,9 @@ enum status field_compare(const struct nodal_field *a, const struct nodal_field 
         RETURN_IF_ERROR(status == STATUS_VERDICT ? STATUS_INPUT
                                                  : status); /* not comparable is not "differs" */
     }
-    differences(count, cols, a->values, reference, comparison->difference);
+    for (int64_t i = 0; i < count; i++) { /* not finite wherever a value is not */
+        comparison->difference[i] = vector_distance((int)cols, a->values + i * cols, reference + i * cols);
+    }
     return STATUS_OK;
 }
 

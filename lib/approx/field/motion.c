@@ -11,20 +11,6 @@ static const int newton_most = 30;
 static const double step_out =
     1e-6; /* a point with a barycentric coordinate below -step_out is in the next cell */
 
-/* The columns of m: the edges of a cell from its first node; in 2D the third one is across. */
-static void edges(const struct cells *cells, const double *x, int64_t cell, double m[3][3])
-{
-    int dim = cells->dim;
-    const int32_t *node = cells->node + cell * (dim + 1);
-    memset(m, 0, 9 * sizeof m[0][0]);
-    m[2][2] = 1.0;
-    for (int a = 0; a < dim; a++) {
-        for (int i = 0; i < dim; i++) {
-            m[i][a] = x[node[a + 1] * dim + i] - x[node[0] * dim + i];
-        }
-    }
-}
-
 /* Gradients at the nodes, of the parameters or of a fit. */
 static enum status find_gradients(const struct nodal_field *field, double *gradient, struct error *error)
 {
@@ -35,7 +21,7 @@ static enum status find_gradients(const struct nodal_field *field, double *gradi
     const struct field_shapes *shapes = field->shapes != NULL ? field->shapes : &fit;
     const double *u = field->shapes != NULL ? field->parameters : field->values;
     struct visibility_places places = {.nodes = true};
-    FREED_BY(support_space_free) struct support_space space = {0};
+    FREED_BY(visibility_free) struct visibility space = {0};
     FREED_BY(field_table_free) struct field_table table = {0};
     NEW_SCRATCH(double, radius, nodes, error);
     fit.support.mls.basis = BASIS_QUADRATIC;
@@ -46,7 +32,8 @@ static enum status find_gradients(const struct nodal_field *field, double *gradi
         RETURN_IF_ERROR(field_spacing(cells, spacing, error));
         RETURN_IF_ERROR(support_radii(&fit.support, nodes, spacing, radius, error));
     }
-    RETURN_IF_ERROR(support_space_build(&shapes->support, cells, shapes->radius, &space, error));
+    RETURN_IF_ERROR(visibility_build(cells, shapes->radius, shapes->support.visibility, shapes->support.side,
+                                     &space, error));
     RETURN_IF_ERROR(field_table_at(shapes, &space, &places, nodes, cells->x, "nodes", true, &table, error));
     for (int64_t n = 0; n < nodes; n++) {
         for (int64_t p = table.lists.ptr[n]; p < table.lists.ptr[n + 1]; p++) {
@@ -71,8 +58,13 @@ enum status motion_build(const struct nodal_field *field, bool linear, struct mo
     RETURN_IF_ERROR(NEW_ARRAY(&motion->moved, cells->node_count * dim, error));
     RETURN_IF_ERROR(cells_across(cells, motion->across, error));
     for (int64_t c = 0; c < cells->count; c++) {
-        double m[3][3], inverse[3][3];
-        edges(cells, cells->x, c, m);
+        /* The columns of m: the edges of the cell from its first node; in 2D the third one is across. */
+        double m[3][3] = {{0}, {0}, {0, 0, 1}}, inverse[3][3];
+        const int32_t *node = cells->node + c * (dim + 1);
+        for (int ij = 0; ij < dim * dim; ij++) {
+            m[ij / dim][ij % dim] =
+                cells->x[node[ij % dim + 1] * dim + ij / dim] - cells->x[node[0] * dim + ij / dim];
+        }
         (void)matrix_inverse(m[0], m[1], m[2], inverse);
         for (int ij = 0; ij < dim * dim; ij++) {
             motion->shape[c * dim * dim + ij] = inverse[ij / dim][ij % dim];
@@ -167,26 +159,16 @@ void motion_place(const struct motion *motion, int64_t cell, const double *X, do
 }
 
 /* The X that linear interpolation in the cell maps to x. */
-static inline void linear_inverse(const struct motion *motion, int dim, int64_t cell, const double *x,
-                                  double *X)
+static void linear_inverse(const struct motion *motion, int64_t cell, const double *x, double *X)
 {
-    const int32_t *node = motion->cells.node + cell * (dim + 1);
-    const double *origin = motion->moved + node[0] * dim;
-    double m[3][3], inverse[3][3], before[3][3];
-    edges(&motion->cells, motion->moved, cell, m);
-    edges(&motion->cells, motion->cells.x, cell, before);
-    (void)matrix_inverse(m[0], m[1], m[2], inverse);
-    for (int i = 0; i < dim; i++) {
-        X[i] = motion->cells.x[node[0] * dim + i];
-    }
-    for (int a = 0; a < dim; a++) {
-        double N = 0;
-        for (int i = 0; i < dim; i++) {
-            N += inverse[a][i] * (x[i] - origin[i]);
-        }
-        for (int i = 0; i < dim; i++) {
-            X[i] += N * before[i][a];
-        }
+    struct cells moved = motion->cells;
+    int dim = moved.dim;
+    double N[4];
+    moved.x = motion->moved;
+    cell_barycentric(&moved, cell, x, N);
+    memset(X, 0, (size_t)dim * sizeof *X);
+    for (int k = 0; k <= dim; k++) {
+        add_scaled(dim, N[k], motion->cells.x + moved.node[cell * (dim + 1) + k] * dim, X);
     }
 }
 
@@ -207,7 +189,7 @@ static inline bool inverse_in(const struct motion *motion, int dim, int64_t cell
 {
     double start[3], N[4], at[3], F[3][3] = {{0}}, inverse[3][3], first = 0;
     int64_t current = cell;
-    linear_inverse(motion, dim, cell, x, X);
+    linear_inverse(motion, cell, x, X);
     memcpy(start, X, (size_t)dim * sizeof *X);
     F[2][2] = 1.0; /* in 2D */
     for (int step = 0; step < newton_most; step++) {

@@ -1,6 +1,6 @@
 #include "approx/field/scattered_fit.h"
 
-#include "approx/mls/weight.h"
+#include "approx/mls/mls.h"
 #include "base/memory.h"
 #include "base/vector.h"
 
@@ -8,11 +8,12 @@
 #include <gsl/gsl_linalg.h>
 #include <math.h>
 #include <stdbool.h>
+#include <string.h>
 
 /* Singular values below this share of the largest are noise: the points do not determine the combination. */
 static const double cut = 1e-5;
 
-enum { MOST_NEIGHBOURS = NEAREST_MOST, MOST_MONOMIALS = 10 };
+enum { MOST_NEIGHBOURS = NEAREST_MOST, MOST_MONOMIALS = 10, MOST_COLUMNS = 6 };
 
 enum status scattered_fit_build(struct scattered_fit *fit, struct error *error)
 {
@@ -50,14 +51,10 @@ static bool is_usable(const void *paths, int32_t row)
     return ((const struct edge_paths *)paths)->verdict[row] != PATH_NONE;
 }
 
-/* The nearest points that are connected or not yet checked, with distances in the table's unit. */
-static enum status find_nearest(const struct scattered_fit *fit, const double *x,
+/* The nearest points that are connected or not yet checked; in the table's unit. */
+static enum status find_nearest(const struct scattered_fit *fit, const double *at,
                                 struct nearest_nodes *nearest, struct error *error)
 {
-    double at[3] = {0.0, 0.0, 0.0};
-    for (int a = 0; a < fit->dim; a++) {
-        at[a] = x[a] / fit->unit;
-    }
     return fail_in(error,
                    point_grid_nearest(&fit->grid, at, fit->dim == 2 ? 12 : MOST_NEIGHBOURS,
                                       fit->paths != NULL ? is_usable : NULL, fit->paths, nearest, error),
@@ -70,22 +67,16 @@ static enum status find_nearest(const struct scattered_fit *fit, const double *x
 static enum status spacing_around(const struct scattered_fit *fit, int64_t row, double *spacing,
                                   struct error *error)
 {
-    double x[3] = {0.0, 0.0, 0.0};
     struct nearest_nodes nearest;
-    for (int a = 0; a < fit->dim; a++) {
-        x[a] = fit->row[row * fit->row_size + a] * fit->unit;
-    }
-    enum status status = find_nearest(fit, x, &nearest, error);
-    if (status == STATUS_OK) {
-        double radius = nearest.distance[nearest.count - 1], count = (double)nearest.count;
-        *spacing = radius * (fit->dim == 2 ? sqrt(M_PI / count) : cbrt(4.0 / 3.0 * M_PI / count));
-    }
-    return status;
+    RETURN_IF_ERROR(find_nearest(fit, fit->x + row * fit->dim, &nearest, error));
+    double radius = nearest.distance[nearest.count - 1], count = (double)nearest.count;
+    *spacing = radius * (fit->dim == 2 ? sqrt(M_PI / count) : cbrt(4.0 / 3.0 * M_PI / count));
+    return STATUS_OK;
 }
 
 /* The nearest connected points: the nearest ones are checked, and unconnected ones replaced, until all are
  * connected. */
-static enum status find_reached(const struct scattered_fit *fit, int32_t from, const double *x,
+static enum status find_reached(const struct scattered_fit *fit, int32_t from, const double *at,
                                 struct nearest_nodes *nearest, struct error *error)
 {
     if (fit->paths != NULL) {
@@ -93,7 +84,7 @@ static enum status find_reached(const struct scattered_fit *fit, int32_t from, c
     }
     for (bool settled = false; !settled;) {
         settled = true;
-        RETURN_IF_ERROR(find_nearest(fit, x, nearest, error));
+        RETURN_IF_ERROR(find_nearest(fit, at, nearest, error));
         for (int64_t i = 0; fit->paths != NULL && i < nearest->count; i++) {
             bool reached;
             RETURN_IF_ERROR(edge_paths_reach(fit->paths, nearest->node[i], &reached, error));
@@ -118,75 +109,60 @@ static void monomials(int dim, const double *xi, double *p)
     }
 }
 
-/* Columns of a weighted fit and their decomposition U s V^T; singular values below the cut are set to 0. */
+/* Columns A of a weighted fit, padded by zero rows, and A = U s V^T; singular values below the cut are 0. */
 struct part {
-    gsl_matrix *U, *V;
-    gsl_vector *s;
+    size_t rows, columns;
+    double A[MOST_NEIGHBOURS * MOST_COLUMNS], U[MOST_NEIGHBOURS * MOST_COLUMNS];
+    double V[MOST_COLUMNS * MOST_COLUMNS], s[MOST_COLUMNS];
 };
 
-static enum status part_allocate(struct part *part, size_t rows, size_t columns, struct error *error)
-{
-    part->U = gsl_matrix_calloc(rows > columns ? rows : columns, columns); /* padded by zeros */
-    part->V = gsl_matrix_calloc(columns, columns);
-    part->s = gsl_vector_calloc(columns);
-    bool good = part->U != NULL && part->V != NULL && part->s != NULL;
-    return good ? STATUS_OK : fail_memory(error, "interpolation of a table");
-}
-
-static void part_free(struct part *part)
-{
-    gsl_matrix_free(part->U);
-    gsl_matrix_free(part->V);
-    gsl_vector_free(part->s);
-}
-
-/* Decompose the columns in U, which receives the left singular vectors. largest: singular value to which the
- * cut refers; 0: the largest one. By the method of Jacobi: the other one of GSL takes memory unchecked. */
+/* Decompose the columns. largest: singular value to which the cut refers; 0: the largest one. By the method
+ * of Jacobi: the other one of GSL takes memory unchecked. */
 static enum status part_decompose(struct part *part, double largest, struct error *error)
 {
-    if (gsl_linalg_SV_decomp_jacobi(part->U, part->V, part->s) != GSL_SUCCESS) {
+    gsl_matrix_view U = gsl_matrix_view_array(part->U, part->rows, part->columns);
+    gsl_matrix_view V = gsl_matrix_view_array(part->V, part->columns, part->columns);
+    gsl_vector_view s = gsl_vector_view_array(part->s, part->columns);
+    memcpy(part->U, part->A, sizeof part->A);
+    if (gsl_linalg_SV_decomp_jacobi(&U.matrix, &V.matrix, &s.vector) != GSL_SUCCESS) {
         return fail(error, STATUS_VERDICT, "interpolation of a table: no singular value decomposition");
     }
-    double least = cut * (largest > 0.0 ? largest : gsl_vector_get(part->s, 0));
-    for (size_t k = 0; k < part->s->size; k++) {
-        if (!(gsl_vector_get(part->s, k) > least)) {
-            gsl_vector_set(part->s, k, 0.0);
-        }
+    double least = cut * (largest > 0.0 ? largest : part->s[0]);
+    for (size_t k = 0; k < part->columns; k++) {
+        part->s[k] = part->s[k] > least ? part->s[k] : 0.0;
     }
     return STATUS_OK;
 }
 
-/* row[i] += sum_j v[j] A^+(j, i), A^+ the pseudo-inverse. */
-static void add_inverse(const struct part *part, const double *v, int64_t count, double *row)
+/* x[columns] = A^+ b, A^+ the pseudo-inverse. */
+static void part_solve(const struct part *part, const double *b, double *x)
 {
-    for (size_t k = 0; k < part->s->size; k++) {
-        double s = gsl_vector_get(part->s, k), sum = 0.0;
-        if (s == 0.0) {
-            continue;
+    memset(x, 0, part->columns * sizeof *x);
+    for (size_t k = 0; k < part->columns; k++) {
+        double product = 0.0;
+        for (size_t i = 0; i < part->rows; i++) {
+            product += part->U[i * part->columns + k] * b[i];
         }
-        for (size_t j = 0; j < part->s->size; j++) {
-            sum += v[j] * gsl_matrix_get(part->V, j, k);
-        }
-        for (int64_t i = 0; i < count; i++) {
-            row[i] += sum / s * gsl_matrix_get(part->U, (size_t)i, k);
+        for (size_t j = 0; j < part->columns && part->s[k] > 0.0; j++) {
+            x[j] += part->V[j * part->columns + k] * product / part->s[k];
         }
     }
 }
 
-/* Make the columns of Q orthogonal to the linear part: Q -= U U^T Q. */
-static void orthogonalise(const struct part *linear, int64_t count, gsl_matrix *Q)
+/* Replace column k of the quadratic part by what the linear part does not fit of it, and the monomial at x,
+ * *at_x, by what the linear fit does not give there; linear[]: the linear monomials at x. */
+static void part_take_rest(const struct part *by, size_t k, const double *linear, struct part *part,
+                           double *at_x)
 {
-    for (size_t c = 0; c < Q->size2; c++) {
-        for (size_t k = 0; k < linear->s->size; k++) {
-            double product = 0.0;
-            for (int64_t i = 0; i < count && gsl_vector_get(linear->s, k) > 0.0; i++) {
-                product += gsl_matrix_get(linear->U, (size_t)i, k) * gsl_matrix_get(Q, (size_t)i, c);
-            }
-            for (int64_t i = 0; i < count; i++) {
-                double value =
-                    gsl_matrix_get(Q, (size_t)i, c) - product * gsl_matrix_get(linear->U, (size_t)i, k);
-                gsl_matrix_set(Q, (size_t)i, c, value);
-            }
+    double column[MOST_NEIGHBOURS] = {0.0}, fit[MOST_COLUMNS];
+    for (size_t i = 0; i < part->rows; i++) {
+        column[i] = part->A[i * part->columns + k];
+    }
+    part_solve(by, column, fit);
+    for (size_t j = 0; j < by->columns; j++) {
+        *at_x -= linear[j] * fit[j];
+        for (size_t i = 0; i < by->rows; i++) {
+            part->A[i * part->columns + k] -= by->A[i * by->columns + j] * fit[j];
         }
     }
 }
@@ -194,72 +170,68 @@ static void orthogonalise(const struct part *linear, int64_t count, gsl_matrix *
 /* The weighted basis at the neighbours, in coordinates from their weighted mean: the linear columns, and the
  * quadratic ones. at_x: the basis at x. With coordinates from the mean, the combinations that the points do
  * not determine are those that vanish on them. */
-static void fill_columns(const struct scattered_fit *fit, const double *x,
-                         const struct nearest_nodes *nearest, double *root, gsl_matrix *linear,
-                         gsl_matrix *quadratic, double *at_x)
+static void fill_columns(const struct scattered_fit *fit, const double *at,
+                         const struct nearest_nodes *nearest, double *root, struct part *linear,
+                         struct part *quadratic, double *at_x)
 {
     int dim = fit->dim == 2 ? 2 : 3;
     double radius = 1.1 * nearest->distance[nearest->count - 1], total = 0.0;
     double mean[3] = {0.0, 0.0, 0.0}, xi[3], p[MOST_MONOMIALS];
     for (int64_t i = 0; i < nearest->count; i++) {
         double weight, slope, relative = nearest->distance[i] / radius;
-        weight_evaluate(WEIGHT_QUARTIC, relative * relative, &weight, &slope);
+        weight_quartic(relative * relative, &weight, &slope);
         root[i] = sqrt(weight);
         total += weight;
         add_scaled(dim, weight, fit->row + nearest->node[i] * fit->row_size, mean);
     }
     for (int a = 0; a < dim; a++) {
         mean[a] /= total;
-        xi[a] = (x[a] / fit->unit - mean[a]) / radius;
+        xi[a] = (at[a] - mean[a]) / radius;
     }
     monomials(dim, xi, at_x);
-    for (int64_t i = 0; i < nearest->count; i++) {
+    for (size_t i = 0; i < (size_t)nearest->count; i++) {
         for (int a = 0; a < dim; a++) {
             xi[a] = (fit->row[nearest->node[i] * fit->row_size + a] - mean[a]) / radius;
         }
         monomials(dim, xi, p);
-        for (size_t k = 0; k < linear->size2; k++) {
-            gsl_matrix_set(linear, (size_t)i, k, root[i] * p[k]);
+        for (size_t k = 0; k < linear->columns; k++) {
+            linear->A[i * linear->columns + k] = root[i] * p[k];
         }
-        for (size_t k = 0; k < quadratic->size2; k++) {
-            gsl_matrix_set(quadratic, (size_t)i, k, root[i] * p[linear->size2 + k]);
+        for (size_t k = 0; k < quadratic->columns; k++) {
+            quadratic->A[i * quadratic->columns + k] = root[i] * p[linear->columns + k];
         }
     }
 }
 
-/* phi[i]: the weight of neighbour i in the value at x. The quadratic monomials fit the remainder of the
- * linear fit, so that linear fields are exact however few the points are. */
-static enum status weights_of(const struct scattered_fit *fit, const double *x,
-                              const struct nearest_nodes *nearest, double *phi, struct error *error)
+/* The values at x. The quadratic monomials fit the remainder of the linear fit, so that linear fields are
+ * exact however few the points are. */
+static enum status fit_values(const struct scattered_fit *fit, const double *at,
+                              const struct nearest_nodes *nearest, double *values, struct error *error)
 {
-    size_t linear_columns = (size_t)(1 + fit->dim);
-    size_t quadratic_columns = (size_t)(fit->dim * (fit->dim + 1) / 2);
-    size_t rows = (size_t)nearest->count;
-    FREED_BY(part_free) struct part linear = {0}, quadratic = {0};
-    double root[MOST_NEIGHBOURS], value[MOST_NEIGHBOURS] = {0.0}, at_x[MOST_MONOMIALS];
-    double beyond[MOST_MONOMIALS] = {0.0}, moment[MOST_NEIGHBOURS * MOST_MONOMIALS];
-    RETURN_IF_ERROR(part_allocate(&linear, rows, linear_columns, error));
-    RETURN_IF_ERROR(part_allocate(&quadratic, rows, quadratic_columns, error));
-    fill_columns(fit, x, nearest, root, linear.U, quadratic.U, at_x);
-    for (size_t i = 0; i < rows; i++) {
-        for (size_t k = 0; k < quadratic_columns; k++) {
-            moment[i * quadratic_columns + k] = gsl_matrix_get(quadratic.U, i, k);
-        }
-    }
+    size_t dim = (size_t)fit->dim, count = (size_t)nearest->count;
+    struct part linear = {.rows = count > 1 + dim ? count : 1 + dim, .columns = 1 + dim};
+    struct part quadratic = {.columns = dim * (dim + 1) / 2};
+    double root[MOST_NEIGHBOURS], b[MOST_NEIGHBOURS] = {0.0}, at_x[MOST_MONOMIALS], fitted[MOST_COLUMNS];
+    quadratic.rows = count > quadratic.columns ? count : quadratic.columns;
+    fill_columns(fit, at, nearest, root, &linear, &quadratic, at_x);
     RETURN_IF_ERROR(part_decompose(&linear, 0.0, error));
-    orthogonalise(&linear, nearest->count, quadratic.U);
-    RETURN_IF_ERROR(part_decompose(&quadratic, gsl_vector_get(linear.s, 0), error));
-    /* p_l c_l + p_q c_q with c_l = L^+ (b - Q c_q), c_q = Q'^+ b. */
-    add_inverse(&linear, at_x, nearest->count, value);
-    for (size_t k = 0; k < quadratic_columns; k++) {
-        beyond[k] = at_x[linear_columns + k];
-        for (size_t i = 0; i < rows; i++) {
-            beyond[k] -= value[i] * moment[i * quadratic_columns + k];
-        }
+    for (size_t k = 0; k < quadratic.columns; k++) {
+        part_take_rest(&linear, k, at_x, &quadratic, &at_x[1 + dim + k]);
     }
-    add_inverse(&quadratic, beyond, nearest->count, value);
-    for (int64_t i = 0; i < nearest->count; i++) {
-        phi[i] = value[i] * root[i];
+    RETURN_IF_ERROR(part_decompose(&quadratic, linear.s[0], error));
+    for (int v = 0; v < fit->value_count; v++) {
+        values[v] = 0.0;
+        for (size_t i = 0; i < count; i++) {
+            b[i] = root[i] * fit->row[nearest->node[i] * fit->row_size + fit->dim + v];
+        }
+        part_solve(&linear, b, fitted);
+        for (size_t k = 0; k < linear.columns; k++) {
+            values[v] += at_x[k] * fitted[k];
+        }
+        part_solve(&quadratic, b, fitted);
+        for (size_t k = 0; k < quadratic.columns; k++) {
+            values[v] += at_x[1 + dim + k] * fitted[k];
+        }
     }
     return STATUS_OK;
 }
@@ -268,20 +240,22 @@ enum status scattered_fit_evaluate(const struct scattered_fit *fit, int32_t from
                                    double *values, double *distance, double *spacing, struct error *error)
 {
     struct nearest_nodes nearest = {0};
-    double phi[MOST_NEIGHBOURS] = {1.0};
-    RETURN_IF_ERROR(find_reached(fit, from, x, &nearest, error));
+    double at[3];
+    for (int a = 0; a < fit->dim; a++) {
+        at[a] = x[a] / fit->unit;
+    }
+    RETURN_IF_ERROR(find_reached(fit, from, at, &nearest, error));
     int64_t last = nearest.count - 1;
     *distance = nearest.distance[0] * fit->unit;
     RETURN_IF_ERROR(spacing_around(fit, nearest.node[0], spacing, error));
     *spacing *= fit->unit;
+    memcpy(values, fit->row + nearest.node[0] * fit->row_size + fit->dim,
+           (size_t)fit->value_count * sizeof *values);
     if (nearest.count > 1 && nearest.distance[last] > 0.0) {
-        RETURN_IF_ERROR(weights_of(fit, x, &nearest, phi, error));
+        RETURN_IF_ERROR(fit_values(fit, at, &nearest, values, error));
     }
     for (int v = 0; v < fit->value_count; v++) {
-        values[v] = 0.0;
-        for (int64_t i = 0; i < nearest.count; i++) {
-            values[v] += phi[i] * fit->row[nearest.node[i] * fit->row_size + fit->dim + v] * fit->unit;
-        }
+        values[v] *= fit->unit;
     }
     return STATUS_OK;
 }

@@ -6,7 +6,7 @@
 #pragma once
 
 #include "approx/points/point_grid.h"
-#include "approx/visibility/edge_paths.h"
+#include "approx/visibility/visibility.h"
 
 #include <stdint.h>
 
@@ -35,7 +35,7 @@ MUST_CHECK enum status scattered_fit_build(struct scattered_fit *fit, struct err
 void scattered_fit_free(struct scattered_fit *fit);
 
 /* values[value_count] at x[dim], m, near node `from`. With `paths` only rows connected to that node are used
- * (edge_paths.h); STATUS_INPUT if there are none. *distance receives the distance to the nearest point, and
+ * (visibility.h); STATUS_INPUT if there are none. *distance receives the distance to the nearest point, and
  * *spacing the mean spacing of the points around that one, m (0 for a single point), so that a caller can
  * refuse to extrapolate far. */
 MUST_CHECK enum status scattered_fit_evaluate(const struct scattered_fit *fit, int32_t from, const double *x,

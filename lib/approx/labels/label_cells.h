@@ -18,14 +18,9 @@ struct label_cells_options {
     double spacing; /* of the lattice, m: edge of its cubes (2D: of its triangles) */
     double finest;  /* 3D: edge of the cubes at interfaces, m: the spacing is halved until it is no larger; 0:
                        the same as elsewhere */
-    const bool *fine;          /* labels->count: those with fine interfaces; NULL: all */
-    const struct cells *sized; /* 3D: cells over the body, with sizes at their nodes */
-    const double *size; /* sized->node_count: wanted length of edges, m, positive, linear within cells; cubes
-                           are halved where it is smaller than theirs; NULL: nowhere */
-    const bool *keep;   /* labels->count: cells of this label are wanted; not label 0 */
-    bool largest; /* keep only the largest of several connected bodies: voxels of others become outside */
-    void (*begin)(void *context, const char *step); /* called at the beginning of each step; NULL: not */
-    void *context;
+    const bool *fine; /* labels->count: those with fine interfaces; NULL: all */
+    const bool *keep; /* labels->count: cells of this label are wanted; not label 0 */
+    bool largest;     /* keep only the largest of several connected bodies: voxels of others become outside */
 };
 
 /* Bounds of the angles of cells, degrees, which label_cells_make meets if it can. */
@@ -52,12 +47,10 @@ struct label_cells {
     double speck_volume; /* and their volume, m3 */
     int64_t astray;      /* nodes of interfaces farther from them than LABEL_CELLS_MOST_ASTRAY voxels */
     double farthest;     /* largest distance of such a node, m */
-    double unsized;      /* share of the body's cubes outside of the cells with sizes */
 };
 
 /* Make the cells. STATUS_INPUT if there is no voxel of a label to keep, or no cell at this spacing; if the
- * finest lattice would have more than 2^26 points everywhere; if sizes need more than seven halvings, or none
- * lies in the body. */
+ * finest lattice would have more than 2^26 points everywhere, or needs more than seven halvings. */
 MUST_CHECK enum status label_cells_make(const struct labels *labels,
                                         const struct label_cells_options *options, struct label_cells *mesh,
                                         struct error *error);
@@ -75,6 +68,6 @@ static inline struct cells label_cells_view(const struct label_cells *mesh)
 MUST_CHECK enum status label_cells_lost(const struct labels *labels, const bool *keep,
                                         const struct label_cells *mesh, int64_t *lost, struct error *error);
 
-/* Least and largest dihedral angle (2D: angle) of a simplex with corners x[dim + 1], degrees; 0 and 180 for
- * one without volume or inverted. */
-void simplex_angles(int dim, const double *const x[], double angles[2]);
+/* Least and largest dihedral angle (2D: angle) of a cell, degrees; 0 and 180 for one without volume or
+ * inverted. */
+void simplex_angles(const struct cells *cells, int64_t cell, double angles[2]);

@@ -37,23 +37,9 @@ static enum status dilate(const int64_t count[3], bool *marked, struct error *er
     return status;
 }
 
-/* Replace the wishes of the cubes of a level by those of their parents, in place: the index of a parent is at
- * most that of its children. */
-static void hand_up(const int64_t fine[3], const int64_t coarse[3], uint8_t *wish)
-{
-    for (int64_t i = 0; i < cubes(fine); i++) {
-        const int64_t at[3] = {i % fine[0], i / fine[0] % fine[1], i / fine[0] / fine[1]};
-        const int64_t parent[3] = {at[0] / 2, at[1] / 2, at[2] / 2};
-        bool first = at[0] % 2 == 0 && at[1] % 2 == 0 && at[2] % 2 == 0;
-        int64_t p = index_of(coarse, parent);
-        wish[p] = first || wish[i] > wish[p] ? wish[i] : wish[p];
-    }
-}
-
-enum status octree_make(int levels, const int64_t count[3], uint8_t *wish, struct octree *octree,
+enum status octree_make(int levels, const int64_t count[3], const bool *wanted, struct octree *octree,
                         struct error *error)
 {
-    SCRATCH bool *marked = NULL;
     *octree = (struct octree){.levels = levels};
     for (int l = levels - 1; l >= 0; l--) {
         for (int d = 0; d < 3; d++) {
@@ -61,24 +47,17 @@ enum status octree_make(int levels, const int64_t count[3], uint8_t *wish, struc
         }
     }
     for (int l = levels - 1; l > 0; l--) {
-        /* Cubes that touch a split one, or a wish with `around`, have at least this level: their parents are
-         * split. */
+        /* Cubes that touch a split or wanted one have at least its level: their parents are split. */
         const int64_t *fine = octree->count[l], *coarse = octree->count[l - 1];
-        RETURN_IF_ERROR(NEW_ARRAY(&marked, cubes(fine), error));
-        for (int64_t i = 0; i < cubes(fine); i++) {
-            marked[i] = (l < levels - 1 && octree->split[l][i]) || wish[i] == OCTREE_WISH(l, true);
-        }
+        NEW_SCRATCH(bool, marked, cubes(fine), error);
+        memcpy(marked, l < levels - 1 ? octree->split[l] : wanted, (size_t)cubes(fine) * sizeof *marked);
         RETURN_IF_ERROR(dilate(fine, marked, error));
         RETURN_IF_ERROR(NEW_ARRAY(&octree->split[l - 1], cubes(coarse), error));
         for (int64_t i = 0; i < cubes(fine); i++) {
             const int64_t parent[3] = {i % fine[0] / 2, i / fine[0] % fine[1] / 2, i / fine[0] / fine[1] / 2};
-            if (marked[i] || wish[i] >= OCTREE_WISH(l, false)) {
-                octree->split[l - 1][index_of(coarse, parent)] = true;
-            }
+            bool *split = &octree->split[l - 1][index_of(coarse, parent)];
+            *split = *split || marked[i];
         }
-        free(marked);
-        marked = NULL;
-        hand_up(fine, coarse, wish);
     }
     return STATUS_OK;
 }

@@ -24,8 +24,7 @@ struct lattice {
                      on the interface */
     int64_t *edge_ptr; /* node_count + 1: the edges at each node, */
     int32_t *edge_idx;
-    bool *on;       /* node_count: moved onto an interface */
-    double unsized; /* as of struct label_cells */
+    bool *on; /* node_count: moved onto an interface */
 };
 
 /* Lay the lattice over the labels and find the label of each point. */
@@ -50,14 +49,10 @@ struct octree {
                                         the finest */
 };
 
-/* The wanted refinement at a cube of the finest level: the least level, and whether all cubes that touch it
- * must have that level, too. */
-#define OCTREE_WISH(level, around) ((uint8_t)(2 * (level) + (around)))
-
-/* Refine an octree so that wish[] of the finest cubes holds, and cubes that touch differ by at most one
- * level. count[] are multiples of 2^(levels - 1); wish[] is changed. */
-MUST_CHECK enum status octree_make(int levels, const int64_t count[3], uint8_t *wish, struct octree *octree,
-                                   struct error *error);
+/* Refine an octree so that the wanted[] cubes of the finest level, and those that touch them, have this
+ * level, and cubes that touch differ by at most one level. count[] are multiples of 2^(levels - 1). */
+MUST_CHECK enum status octree_make(int levels, const int64_t count[3], const bool *wanted,
+                                   struct octree *octree, struct error *error);
 void octree_free(struct octree *octree);
 
 /* Call visit(context, corner) for each tetrahedron between the leaves: four points, x, y, z in halves of the
@@ -73,34 +68,34 @@ struct label_cells_star {
     uint16_t (*label)[LABEL_CELLS_MOST_LABELS];
     uint8_t *labels; /* node_count: labels that meet; 1: not on an interface */
 };
-/* The labels are those of cells with wanted[cell_count] (NULL: of all cells) and of facets. */
-MUST_CHECK enum status star_make(const struct label_cells *mesh, const bool *wanted,
-                                 struct label_cells_star *star, struct error *error);
 void star_free(struct label_cells_star *star);
 
-/* The cells of the body. */
-struct label_cells_kept {
-    bool *wanted;   /* cell_count: of the body; the others lie around it */
-    bool *apart;    /* node_count: nodes that have others at the same place */
-    double *volume; /* labels->count: of label_cells_volume */
+/* The body that is made. The cells around it are part of `mesh`: as long as none of them is inverted, no wall
+ * of the body passes through another one. */
+struct label_body {
+    const struct labels *labels;
+    const struct label_cells_options *options;
+    struct label_cells *mesh;
+    double voxel;    /* of labels, m */
+    bool *between;   /* cell_count: all nodes lie on interfaces */
+    bool *wanted;    /* cell_count: of the body; the others lie around it */
+    bool *apart;     /* node_count: nodes that have others at the same place */
+    double *volume;  /* labels->count: that the cells of each label are to have, m3 */
+    int32_t *across; /* cells_across */
+    int32_t *group;  /* cell_count: -1 between calls, or the connected body of a cell */
+    int32_t *stack;  /* cell_count */
+    int32_t *from;   /* cell_count */
+    struct label_cells_star star;
+    double *place; /* node_count * dim: of the nodes on interfaces, */
+    double *off;   /* node_count: and how far they are from there, m; infinity: there is none near */
 };
 
-/* Choose the cells of wanted labels, without specks; join or cut apart parts that share only nodes or edges;
- * and find the boundary. between[cell_count]: cells all of whose nodes lie on interfaces. */
-MUST_CHECK enum status label_cells_keep(const struct labels *labels,
-                                        const struct label_cells_options *options, const bool *between,
-                                        struct label_cells *mesh, struct label_cells_kept *kept,
-                                        struct error *error);
-void label_cells_kept_free(struct label_cells_kept *kept);
+/* Set the star: cells at nodes, and the labels there of wanted cells (NULL: of all) and of facets. */
+MUST_CHECK enum status star_make(struct label_body *body, struct error *error);
 
-/* The volume that the cells of each label are to have, volume[labels->count], m3: that of the voxels that
- * hang together with its cells, and of those of others in them that do not hang together with theirs: specks
- * and cavities that the lattice does not see. `mesh` has cells beside the wanted ones, too: those of bodies
- * that are left out. Voxels nearer to these count for them, and become outside if `largest`. */
-MUST_CHECK enum status label_cells_volume(const struct labels *labels,
-                                          const struct label_cells_options *options,
-                                          const struct label_cells *mesh, const bool *wanted, double *volume,
-                                          struct error *error);
+/* Choose the cells of wanted labels, without specks; join or cut apart parts that share only nodes or edges;
+ * and find the boundary. */
+MUST_CHECK enum status label_cells_keep(struct label_body *body, struct error *error);
 
 /* Drop the cells that are not wanted, and nodes without cells. */
 MUST_CHECK enum status label_cells_drop(const bool *wanted, struct label_cells *mesh, struct error *error);
@@ -108,31 +103,17 @@ MUST_CHECK enum status label_cells_drop(const bool *wanted, struct label_cells *
 /* Renumber the nodes without those that have no cell. */
 MUST_CHECK enum status label_cells_compact(struct label_cells *mesh, struct error *error);
 
-/* The cells that are kept, and scratch. */
-struct label_cells_keeping {
-    struct label_cells *mesh;
-    struct cells cells;
-    int32_t *across; /* cells_across */
-    bool *wanted;
-    const bool *between;
-    int32_t *group; /* cell_count: -1 between calls, or the connected body of a cell */
-    bool *apart;    /* nodes: whether there are others at the same place */
-    int32_t *stack; /* cell_count */
-    int32_t *from;  /* cell_count */
-};
-
 /* Number the wanted cells without a group that are connected with the first; only by faces at `node`, unless
  * that is -1. Returns how many, which stack[] lists. */
-int64_t label_cells_flood(struct label_cells_keeping *keeping, int64_t first, int32_t number, int64_t node);
+int64_t label_cells_flood(struct label_body *body, int64_t first, int32_t number, int64_t node);
 
 /* Resolve places where parts share only a node or an edge (non-manifold boundary): add cells all of whose
  * nodes lie on interfaces so that the parts share faces, or remove such cells. No node leaves its
  * interface. */
-void label_cells_join(struct label_cells_keeping *keeping, const struct label_cells_star *star);
+void label_cells_join(struct label_body *body);
 
 /* Separate the bodies, numbered in group[], where they share only a node or an edge. */
-MUST_CHECK enum status label_cells_cut_apart(struct label_cells_keeping *keeping,
-                                             const struct label_cells_star *star, struct error *error);
+MUST_CHECK enum status label_cells_cut_apart(struct label_body *body, struct error *error);
 
 /* Voxels by which nodes leave their interface for the sake of volumes, and farther than which they are
  * brought nearer. */
@@ -145,45 +126,22 @@ MUST_CHECK enum status label_cells_cut_apart(struct label_cells_keeping *keeping
 /* Sweeps of each kind that move nodes. */
 enum { LABEL_CELLS_SWEEPS = 6 };
 
-/* A body whose nodes are moved. The cells around it are part of `mesh`: as long as none of them is
- * inverted, no wall of the body passes through another one. */
-struct shaping {
-    const struct labels *labels;
-    double voxel;     /* of labels, m */
-    const bool *keep; /* labels->count: labels of the body */
-    const struct label_cells_kept *kept;
-    struct label_cells *mesh;
-    struct label_cells_star star;
-    double *place; /* node_count * dim: of the nodes on interfaces, */
-    double *off;   /* node_count: and how far they are from there, m; infinity: there is none near */
-};
-
 /* Move a node towards `target` as far as no cell at it scores less than before and than `least`. around: also
  * move the nodes around it, those on interfaces on these, and those with others at the same place not.
  * Returns whether it is at the target. */
-bool star_move(const struct shaping *shaping, int64_t node, const double target[], double least, bool around);
+bool star_move(const struct label_body *body, int64_t node, const double target[], double least, bool around);
 
 /* Move the nodes of cells that score less than `least` until they score more. Nodes of interfaces stay on
  * these. */
-void label_cells_repair(const struct shaping *shaping, double least);
+void label_cells_repair(const struct label_body *body, double least);
 
 /* Move x to the place of a node: where all its labels meet, if that is wanted and they do; on the boundary to
  * the surface of the body; elsewhere to the nearest interface of its labels. Where Newton's method finds none
  * near it is searched for within `reach`, m. Returns the distance; infinity if there is none. */
-double node_place(const struct shaping *shaping, int64_t node, bool meeting, double reach, double x[]);
+double node_place(const struct label_body *body, int64_t node, bool meeting, double reach, double x[]);
 
 /* Largest distance of a search for an interface, voxels. */
 #define LABEL_CELLS_REACH 6.0
 
 /* Gradient of a cell's volume with respect to the position of its corner k. */
 void label_cells_gradient(const struct label_cells *mesh, int64_t cell, int k, double gradient[3]);
-
-/* Name the step that begins, for options->begin. */
-void label_cells_begin(const struct label_cells_options *options, const char *step);
-
-/* Move nodes where labels meet onto the interfaces; separate nodes at one place (apart[]); improve poor
- * cells; and correct the volumes of labels. */
-MUST_CHECK enum status label_cells_improve(const struct labels *labels,
-                                           const struct label_cells_options *options,
-                                           const struct label_cells_kept *kept, struct label_cells *mesh,
-                                           struct error *error);

@@ -2,11 +2,42 @@
  * symmetric systems of the moments, gradients; private to lib/approx. */
 #pragma once
 
-#include "approx/mls/mls_kernel.h"
+#include "approx/mls/mls.h"
 #include "base/processor.h"
 
 #include <math.h>
 #include <string.h>
+
+/* Rows of scratch. Their stride is at least the number of neighbours and MLS_PADDING. */
+enum mls_row {
+    ROW_XI,
+    ROW_RATIO = ROW_XI + 3,
+    ROW_WEIGHT,
+    ROW_SLOPE,
+    ROW_PHI,
+    ROW_GRADIENT,
+    ROW_ORTHOGONAL = ROW_GRADIENT + 3, /* mls_orthogonal: a matrix in the place of MLS_MAX_BASIS rows */
+    MLS_ROWS = ROW_ORTHOGONAL + MLS_MAX_BASIS
+};
+
+/* Where all pivots are larger, the condition of this small matrix is good; a support is refused where the
+ * reciprocal condition (of the matrix scaled to unit diagonal, from the 1-norm of R) is below the square of
+ * this. */
+#define MLS_SAFE_PIVOT 1e-5
+#define MLS_LEAST_CONDITION (MLS_SAFE_PIVOT * MLS_SAFE_PIVOT)
+
+/* Padding of a row beyond the number of neighbours: for the rows of H, and to whole vectors. */
+#define MLS_PADDING 16
+
+/* Evaluate at one point: phi[count] and dphi[count * dim], per unit of x, unless NULL; false if
+ * mls_orthogonal() is needed. scratch[MLS_ROWS * stride]. */
+bool mls_kernel(const struct mls *mls, const struct mls_support *support, double *scratch, int64_t stride,
+                double *phi, double *dphi);
+
+/* The same by orthogonal factorisation, equation (3) of lib/README.md. Any verdict other than MLS_GOOD: there
+ * are none. */
+enum mls_verdict mls_orthogonal(const struct mls *mls, const struct mls_support *support, double *scratch,
+                                int64_t stride, double *phi, double *dphi);
 
 #define LANES 4
 typedef double lanes __attribute__((vector_size(8 * LANES)));
@@ -88,29 +119,8 @@ KERNEL_INLINE bool factorise(int dim, int m, double least_linear, double least, 
     return good && isfinite(system->inverse[m - 1]);
 }
 
-/* x = M^-1 e_1. The newest unknown enters each sum last, so that the others do not wait for it. */
-KERNEL_INLINE void substitute_unit(int m, const struct mls_system *system, double *x)
-{
-    x[0] = 1.0;
-    UNROLL
-    for (int k = 1; k < m; k++) {
-        x[k] = 0.0;
-        UNROLL
-        for (int i = 0; i < k; i++) {
-            x[k] -= system->upper[i][k] * x[i];
-        }
-    }
-    UNROLL
-    for (int k = m - 1; k >= 0; k--) {
-        x[k] *= system->inverse[k];
-        UNROLL
-        for (int i = m - 1; i > k; i--) {
-            x[k] -= system->upper[k][i] * x[i];
-        }
-    }
-}
-
-/* x = M^-1 x for LANES right sides at once. */
+/* x = M^-1 x for LANES right sides at once. The newest unknown enters each sum last, so that the others do
+ * not wait for it. */
 KERNEL_INLINE void substitute(int m, const struct mls_system *system, lanes *x)
 {
     UNROLL
@@ -147,13 +157,6 @@ KERNEL_INLINE void load_row(const struct mls_point *point, int row, int64_t j, l
 KERNEL_INLINE void store_row(const struct mls_point *point, int row, int64_t j, const lanes *v)
 {
     memcpy(point->row + row * point->stride + j, v, sizeof *v);
-}
-
-KERNEL_INLINE void load_vector(int dim, const struct mls_point *point, int row, int64_t j, lanes *v)
-{
-    for (int a = 0; a < dim; a++) {
-        load_row(point, row + a, j, &v[a]);
-    }
 }
 
 /* Differences of coordinates, and radii, in rows; the largest radius. */
@@ -218,7 +221,9 @@ KERNEL_INLINE void weigh(enum weight_function function, double widen, int dim, s
 KERNEL_INLINE void load_monomials(int dim, int m, const struct mls_point *point, int64_t j, lanes *xi,
                                   lanes *p)
 {
-    load_vector(dim, point, ROW_XI, j, xi);
+    for (int a = 0; a < dim; a++) {
+        load_row(point, ROW_XI + a, j, &xi[a]);
+    }
     monomials(dim, m, xi, p);
 }
 
@@ -281,7 +286,7 @@ KERNEL_INLINE void begin(const struct mls *mls, const struct mls_support *suppor
 
 /* Store s d_a phi_j = w_j p_j.g_a - slope_j xi_a p_j.c in
  * ROW_GRADIENT + a. Returns the largest defect of sum grad phi p = grad p(0), p linear. */
-KERNEL_INLINE double gradients(int dim, int m, const lanes *coefficient, const struct mls_point *point)
+KERNEL_INLINE double make_gradients(int dim, int m, const lanes *coefficient, const struct mls_point *point)
 {
     double g[3][MLS_MAX_BASIS], worst = 0.0;
     lanes defect[3][4];

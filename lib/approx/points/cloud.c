@@ -11,9 +11,6 @@
 
 static enum status check(const struct cloud_options *options, struct error *error)
 {
-    if (options->dim != 2 && options->dim != 3) {
-        return fail(error, STATUS_INPUT, "dimension %d is not 2 or 3", options->dim);
-    }
     for (int a = 0; a < options->dim; a++) {
         if (!(options->low[a] < options->high[a]) || !isfinite(options->high[a] - options->low[a])) {
             return fail(error, STATUS_INPUT, "box: %g,%g along axis %d is no range", options->low[a],
@@ -23,15 +20,6 @@ static enum status check(const struct cloud_options *options, struct error *erro
             return fail(error, STATUS_INPUT, "count: %lld nodes along axis %d are fewer than 2",
                         (long long)options->count[a], a + 1);
         }
-    }
-    if (options->kind == CLOUD_HALTON && options->count[0] < 1) {
-        return fail(error, STATUS_INPUT, "count: no nodes");
-    }
-    if (options->kind == CLOUD_JITTERED && !(options->jitter >= 0 && options->jitter <= 0.5)) {
-        return fail(error, STATUS_INPUT, "jitter: %g is not within [0, 0.5]", options->jitter);
-    }
-    if (options->kind == CLOUD_GRADED && !(options->ratio >= 1 && isfinite(options->ratio))) {
-        return fail(error, STATUS_INPUT, "ratio: %g is less than 1", options->ratio);
     }
     return STATUS_OK;
 }
@@ -212,17 +200,6 @@ static enum status make_cells(const struct cloud_options *options, struct cloud 
     return STATUS_OK;
 }
 
-static bool all_positive(const struct cloud *cloud)
-{
-    struct cells cells = {cloud->dim, cloud->node_count, cloud->x, cloud->cell_count, cloud->cells};
-    for (int64_t c = 0; c < cells.count; c++) {
-        if (!(cell_volume(&cells, c) > 0)) {
-            return false;
-        }
-    }
-    return true;
-}
-
 /* ---- facets ---- */
 
 /* The side of the box that contains a boundary face: 2 * axis, + 1 at the high end. */
@@ -243,12 +220,12 @@ static int side_of(const struct cloud_options *options, const int32_t face[])
     return -1;
 }
 
-static enum status make_facets(const struct cloud_options *options, struct cloud *cloud, struct error *error)
+static enum status make_facets(const struct cloud_options *options, const struct cells *cells,
+                               struct cloud *cloud, struct error *error)
 {
     int dim = options->dim;
-    struct cells cells = {dim, cloud->node_count, cloud->x, cloud->cell_count, cloud->cells};
     FREED_BY(faces_free) struct faces faces = {0};
-    RETURN_IF_ERROR(faces_build(&cells, true, &faces, error));
+    RETURN_IF_ERROR(faces_build(cells, true, &faces, error));
     RETURN_IF_ERROR(NEW_ARRAY(&cloud->facets, faces.count * dim, error));
     RETURN_IF_ERROR(NEW_ARRAY(&cloud->facet_set, faces.count, error));
     for (int side = 0; side < 2 * dim; side++) {
@@ -270,38 +247,23 @@ enum status cloud_make(const struct cloud_options *options, struct cloud *cloud,
     RETURN_IF_ERROR(count_nodes(options, &cloud->node_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&cloud->x, cloud->node_count * options->dim, error));
     if (options->kind == CLOUD_HALTON) {
-        RETURN_IF_ERROR(place_halton(options, cloud, error));
-        return STATUS_OK;
+        return place_halton(options, cloud, error);
     }
     RETURN_IF_ERROR(place_lattice(options, cloud, error));
     if (options->kind == CLOUD_JITTERED) {
         RETURN_IF_ERROR(jitter(options, cloud, error));
     }
     RETURN_IF_ERROR(make_cells(options, cloud, error));
-    if (!all_positive(cloud)) {
+    struct cells cells = {cloud->dim, cloud->node_count, cloud->x, cloud->cell_count, cloud->cells};
+    if (cells_check(&cells, error) != STATUS_OK) {
         cloud->cell_count = 0;
         return STATUS_OK;
     }
-    return make_facets(options, cloud, error);
+    return make_facets(options, &cells, cloud, error);
 }
 
 void cloud_free(struct cloud *cloud)
 {
     FREE_ALL(cloud->x, cloud->cells, cloud->facets, cloud->facet_set);
     *cloud = (struct cloud){0};
-}
-
-double cloud_function_value(enum cloud_function function, int dim, const double x[])
-{
-    double z = dim == 3 ? x[2] : 0;
-    double linear = 1 + 2 * x[0] + 3 * x[1] + 4 * z;
-    double square = x[0] * x[0] + x[1] * x[1] + z * z;
-    switch (function) {
-    case FUNCTION_LINEAR:
-        return linear;
-    case FUNCTION_QUADRATIC:
-        return linear + x[0] * x[0] - 2 * x[0] * x[1] + 3 * x[1] * x[1] + x[0] * z - x[1] * z + 2 * z * z;
-    default:
-        return (1 - square) * exp(-square / 2);
-    }
 }

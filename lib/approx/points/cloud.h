@@ -36,16 +36,8 @@ struct cloud {
 /* Make a cloud. The squares of a lattice are split into two triangles along the diagonal from low to high; in
  * a jittered lattice along the diagonal that gives the larger least area, so that all areas are positive for
  * jitter up to 0.5. Cubes are split into six tetrahedra (Kuhn); if jitter (above about 0.15) inverts one of
- * them, the cloud has neither cells nor facets. STATUS_INPUT for options out of range or more than 2^31 - 1
- * nodes or cells. */
+ * them, the cloud has neither cells nor facets. STATUS_INPUT for a box or counts out of range or more than
+ * 2^31 - 1 nodes or cells. */
 MUST_CHECK enum status cloud_make(const struct cloud_options *options, struct cloud *cloud,
                                   struct error *error);
 void cloud_free(struct cloud *cloud);
-
-/* Test functions with values at the nodes; r^2 is the sum of the squares of all coordinates (m). */
-enum cloud_function {
-    FUNCTION_PAPER,    /* (1 - r^2) exp(-r^2 / 2) */
-    FUNCTION_LINEAR,   /* 1 + 2 x + 3 y + 4 z */
-    FUNCTION_QUADRATIC /* 1 + 2 x + 3 y + 4 z + x^2 - 2 x y + 3 y^2 + x z - y z + 2 z^2 */
-};
-double cloud_function_value(enum cloud_function function, int dim, const double x[]);

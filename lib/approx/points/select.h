@@ -1,10 +1,7 @@
 /* Choosing nodes, facets and cells by their positions. */
 #pragma once
 
-#include "base/status.h"
-
-#include <stdbool.h>
-#include <stdint.h>
+#include "approx/cells/cells.h"
 
 /* Nodes or points (corners = 1), segments (2), triangles (3), tetrahedra (4): facets or cells in dim
  * dimensions. */
@@ -30,9 +27,6 @@ struct shape {
     double slack; /* points within this distance of the shape count as inside, m, for round-off */
 };
 
-/* Mean of the corners of an item. */
-void item_centre(const struct items *items, int64_t item, double *centre);
-
 /* chosen[items->count]: items whose centre lies in the shape; for SHAPE_PLANE items with all corners in
  * it. */
 void items_in_shape(const struct items *items, const struct shape *shape, bool *chosen);
@@ -48,3 +42,20 @@ MUST_CHECK enum status items_nearest(const struct items *items, const double *re
 /* chosen[items->count]: items whose centre is within `reach` (positive, m) of one of the others. */
 MUST_CHECK enum status items_near(const struct items *items, const struct items *others, double reach,
                                   bool *chosen, struct error *error);
+
+/* Nodes that hang on a facet of another cell: they lie on it, but are not its corners, as where two meshes of
+ * different fineness meet. The cells are not joined there. */
+
+/* Nodes that hang, and the place of the first one, m. */
+struct hanging_nodes {
+    int64_t count;
+    double place[3];
+};
+
+/* Find the nodes on the boundary that hang on facets of the boundary. *joined: those on a facet of their own
+ * body, to which cells with common nodes connect them; *apart: those on a facet of another body alone, or of
+ * another face of a slit: their own facet and the other are among named[named_count * dim]. Errors: as
+ * faces_build; STATUS_SYSTEM (memory). */
+MUST_CHECK enum status cells_find_hanging(const struct cells *cells, int64_t named_count,
+                                          const int32_t *named, struct hanging_nodes *joined,
+                                          struct hanging_nodes *apart, struct error *error);

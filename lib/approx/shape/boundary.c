@@ -68,13 +68,6 @@ static enum status row_finish(struct dense_row *row, double whole, int64_t part,
     return STATUS_OK;
 }
 
-/* The weight of a quadrature point in the value at a vertex of the linear function through the points of a
- * facet; the point has the barycentric coordinate `near` of the vertex. */
-static double extrapolated(int dim, double near)
-{
-    return (dim + 1) * near - 1.0;
-}
-
 /* Add one corner's facet to the part: its shape functions, area, normal, and samples. */
 static enum status add_corner(const struct face_table *table, const struct facet_set *set,
                               const int64_t *face_of, const struct corner *corner, int64_t part,
@@ -93,7 +86,8 @@ static enum status add_corner(const struct face_table *table, const struct facet
     quadrature_positions(&rule, dim, table->x, face, x);
     for (int g = 0; g < rule.points; g++) {
         double near = rule.barycentric[g * dim + vertex], weight = rule.weight[g] * size * near;
-        double in_row = at_corner ? size / dim * extrapolated(dim, near) : weight;
+        /* At a corner: as of the linear function through the points. */
+        double in_row = at_corner ? size / dim * ((dim + 1) * near - 1.0) : weight;
         int64_t point = face_of[corner->facet] * table->per_face + g;
         for (int64_t i = table->lists->ptr[point]; row != NULL && i < table->lists->ptr[point + 1]; i++) {
             RETURN_IF_ERROR(row_add(row, table->lists->idx[i], in_row * table->phi[i], error));
@@ -131,42 +125,10 @@ static double normalise(int dim, int64_t part, struct boundary_averages *average
     return sqrt(length2) / averages->area[part];
 }
 
-/* Average `a` is the value at one place, its one sample. */
-static void put_place(int dim, int64_t a, const double *x, struct boundary_averages *averages)
-{
-    int64_t sample = averages->sample_ptr[a];
-    averages->sample_ptr[a + 1] = sample + 1;
-    averages->sample_share[sample] = 1.0;
-    memcpy(averages->position + a * dim, x, (size_t)dim * sizeof *x);
-    memcpy(averages->sample_x + sample * dim, x, (size_t)dim * sizeof *x);
-}
-
-/* The parts over which averages are taken: one for each node, or each node and side; with `sides` followed by
- * the whole sides. */
-static enum status collect_parts(const struct face_table *table, const struct facet_set *set,
-                                 const int64_t *face_of, bool split, struct boundary_sides *sides,
-                                 struct corner *corners, int64_t *parts, struct error *error)
-{
-    int64_t count = 2 * set->count * table->dim;
-    boundary_collect_corners(table, set, face_of, split, corners, parts);
-    if (sides != NULL) {
-        sides->node_average_count = *parts;
-        RETURN_IF_ERROR(NEW_ARRAY(&sides->facet_group, set->count, error));
-        RETURN_IF_ERROR(boundary_add_sides(table, set, split, corners, parts, sides->facet_group,
-                                           &sides->group_count, error));
-        RETURN_IF_ERROR(NEW_ARRAY(&sides->group, *parts, error));
-        RETURN_IF_ERROR(NEW_ARRAY(&sides->flat, *parts, error));
-        for (int64_t i = 0; i < count; i++) {
-            sides->group[corners[i].part] = sides->facet_group[corners[i].facet];
-        }
-    }
-    return STATUS_OK;
-}
-
-/* Build averages of any kind; without node_lists boundary averages, else node values. */
+/* Build averages of any kind; without `valued`, the lists of neighbours are empty. */
 static enum status build(const struct face_table *table, const struct facet_set *set, bool split,
-                         bool at_corner, struct boundary_sides *sides, const struct neighbours *node_lists,
-                         const double *node_phi, struct boundary_averages *averages, struct error *error)
+                         bool at_corner, bool valued, struct boundary_sides *sides,
+                         struct boundary_averages *averages, struct error *error)
 {
     int dim = table->dim;
     int64_t corner_count = (sides != NULL ? 2 : 1) * set->count * dim, parts = 0, capacity = 0;
@@ -177,29 +139,20 @@ static enum status build(const struct face_table *table, const struct facet_set 
     RETURN_IF_ERROR(NEW_ARRAY(&row.value, table->node_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&row.is_touched, table->node_count, error));
     RETURN_IF_ERROR(boundary_find_faces(table, set, face_of, error));
-    RETURN_IF_ERROR(collect_parts(table, set, face_of, split, sides, corners, &parts, error));
+    RETURN_IF_ERROR(boundary_parts(table, set, face_of, split, sides, corners, &parts, error));
     RETURN_IF_ERROR(allocate(dim, parts, corner_count * table->per_face, averages, error));
     for (int64_t part = 0, next = 0; part < parts; part++) {
-        int32_t node = corners[next].node;
+        averages->node[part] = corners[next].node;
         averages->sample_ptr[part + 1] = averages->sample_ptr[part];
         for (; next < corner_count && corners[next].part == part; next++) {
             RETURN_IF_ERROR(add_corner(table, set, face_of, &corners[next], part, at_corner,
-                                       node_lists == NULL ? &row : NULL, averages, error));
+                                       valued ? &row : NULL, averages, error));
         }
-        averages->node[part] = node;
-        double whole = averages->area[part];
         double mean = normalise(dim, part, averages);
         if (sides != NULL) {
             sides->flat[part] = mean > 1.0 - 0.5e-6;
         }
-        if (node_lists != NULL) {
-            whole = 1.0;
-            put_place(dim, part, table->x + (int64_t)node * dim, averages);
-            for (int64_t i = node_lists->ptr[node]; i < node_lists->ptr[node + 1]; i++) {
-                RETURN_IF_ERROR(row_add(&row, node_lists->idx[i], node_phi[i], error));
-            }
-        }
-        RETURN_IF_ERROR(row_finish(&row, whole, part, &capacity, averages, error));
+        RETURN_IF_ERROR(row_finish(&row, averages->area[part], part, &capacity, averages, error));
     }
     return STATUS_OK;
 }
@@ -207,13 +160,13 @@ static enum status build(const struct face_table *table, const struct facet_set 
 enum status boundary_averages_build(const struct face_table *table, const struct facet_set *set,
                                     struct boundary_averages *averages, struct error *error)
 {
-    return build(table, set, true, false, NULL, NULL, NULL, averages, error);
+    return build(table, set, true, false, true, NULL, averages, error);
 }
 
 enum status boundary_corners_build(const struct face_table *table, const struct facet_set *set,
                                    struct boundary_averages *averages, struct error *error)
 {
-    return build(table, set, false, true, NULL, NULL, NULL, averages, error);
+    return build(table, set, false, true, true, NULL, averages, error);
 }
 
 enum status boundary_sides_build(const struct face_table *table, const struct facet_set *set, bool split,
@@ -221,7 +174,7 @@ enum status boundary_sides_build(const struct face_table *table, const struct fa
                                  struct error *error)
 {
     *sides = (struct boundary_sides){0};
-    return build(table, set, split, false, sides, NULL, NULL, averages, error);
+    return build(table, set, split, false, true, sides, averages, error);
 }
 
 void boundary_sides_free(struct boundary_sides *sides)
@@ -230,40 +183,49 @@ void boundary_sides_free(struct boundary_sides *sides)
     *sides = (struct boundary_sides){0};
 }
 
+/* Let average `a` be the value at the place x, its one sample: a row of a table. room: of idx and phi. */
+static enum status put_value(int dim, int64_t a, const struct neighbours *lists, const double *phi,
+                             int64_t row, const double *x, int64_t room[2],
+                             struct boundary_averages *averages, struct error *error)
+{
+    int64_t from = lists->ptr[row], length = lists->ptr[row + 1] - from, at = averages->ptr[a];
+    RETURN_IF_ERROR(GROW_ARRAY(&averages->idx, at + length, &room[0], error));
+    RETURN_IF_ERROR(GROW_ARRAY(&averages->phi, at + length, &room[1], error));
+    memcpy(averages->idx + at, lists->idx + from, (size_t)length * sizeof *averages->idx);
+    memcpy(averages->phi + at, phi + from, (size_t)length * sizeof *phi);
+    averages->ptr[a + 1] = at + length;
+    averages->sample_ptr[a + 1] = a + 1;
+    averages->sample_share[a] = 1.0;
+    memcpy(averages->position + a * dim, x, (size_t)dim * sizeof *x);
+    memcpy(averages->sample_x + a * dim, x, (size_t)dim * sizeof *x);
+    return STATUS_OK;
+}
+
 enum status boundary_nodes_build(const struct face_table *table, const struct facet_set *set,
                                  const struct neighbours *node_lists, const double *node_phi,
                                  struct boundary_averages *averages, struct error *error)
 {
-    return build(table, set, false, false, NULL, node_lists, node_phi, averages, error);
-}
-
-/* Set average `a` to the values of one point. */
-static void put_values(struct boundary_averages *averages, int64_t a, const int32_t *idx, const double *phi,
-                       int64_t length)
-{
-    int64_t at = averages->ptr[a];
-    memcpy(averages->idx + at, idx, (size_t)length * sizeof *idx);
-    memcpy(averages->phi + at, phi, (size_t)length * sizeof *phi);
-    averages->ptr[a + 1] = at + length;
+    int64_t room[2] = {0};
+    RETURN_IF_ERROR(build(table, set, false, false, false, NULL, averages, error));
+    for (int64_t a = 0; a < averages->count; a++) {
+        int64_t node = averages->node[a];
+        RETURN_IF_ERROR(put_value(table->dim, a, node_lists, node_phi, node, table->x + node * table->dim,
+                                  room, averages, error));
+    }
+    return STATUS_OK;
 }
 
 enum status boundary_list_build(int dim, const double *x, const int32_t *nodes, int64_t count,
                                 const struct neighbours *lists, const double *phi,
                                 struct boundary_averages *averages, struct error *error)
 {
-    int64_t entries = 0;
+    int64_t room[2] = {0};
     *averages = (struct boundary_averages){0};
-    for (int64_t i = 0; i < count; i++) {
-        entries += lists->ptr[nodes[i] + 1] - lists->ptr[nodes[i]];
-    }
     RETURN_IF_ERROR(allocate(dim, count, count, averages, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&averages->idx, entries, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&averages->phi, entries, error));
     for (int64_t i = 0; i < count; i++) {
-        int64_t from = lists->ptr[nodes[i]], length = lists->ptr[nodes[i] + 1] - from;
         averages->node[i] = nodes[i];
-        put_values(averages, i, lists->idx + from, phi + from, length);
-        put_place(dim, i, x + (int64_t)nodes[i] * dim, averages);
+        RETURN_IF_ERROR(
+            put_value(dim, i, lists, phi, nodes[i], x + (int64_t)nodes[i] * dim, room, averages, error));
     }
     return STATUS_OK;
 }
@@ -272,29 +234,22 @@ enum status boundary_points_build(const struct face_table *table, const struct f
                                   struct boundary_averages *averages, struct error *error)
 {
     int dim = table->dim;
-    int64_t entries = 0, count = set->count * table->per_face;
+    int64_t count = set->count * table->per_face, room[2] = {0};
     struct quadrature_rule rule = quadrature_face_rule(dim);
     *averages = (struct boundary_averages){0};
     NEW_SCRATCH(int64_t, face_of, set->count, error);
     RETURN_IF_ERROR(boundary_find_faces(table, set, face_of, error));
     RETURN_IF_ERROR(allocate(dim, count, count, averages, error));
-    for (int64_t f = 0; f < set->count; f++) {
-        int64_t first = face_of[f] * table->per_face;
-        entries += table->lists->ptr[first + table->per_face] - table->lists->ptr[first];
-    }
-    RETURN_IF_ERROR(NEW_ARRAY(&averages->idx, entries, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&averages->phi, entries, error));
     for (int64_t p = 0; p < count; p++) {
-        int64_t facet = p / table->per_face, point = face_of[facet] * table->per_face + p % table->per_face;
-        int64_t from = table->lists->ptr[point], length = table->lists->ptr[point + 1] - from;
+        int64_t facet = p / table->per_face, g = p % table->per_face;
         double normal[3], size, x[9];
         boundary_unit_normal(table, set->facet + facet * dim, normal, &size);
         quadrature_positions(&rule, dim, table->x, table->faces->node + face_of[facet] * dim, x);
         averages->node[p] = set->facet[facet * dim];
-        averages->area[p] = rule.weight[p % table->per_face] * size;
+        averages->area[p] = rule.weight[g] * size;
         memcpy(averages->normal + p * dim, normal, (size_t)dim * sizeof *normal);
-        put_place(dim, p, x + p % table->per_face * dim, averages);
-        put_values(averages, p, table->lists->idx + from, table->phi + from, length);
+        RETURN_IF_ERROR(put_value(dim, p, table->lists, table->phi, face_of[facet] * table->per_face + g,
+                                  x + g * dim, room, averages, error));
     }
     return STATUS_OK;
 }

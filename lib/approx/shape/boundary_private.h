@@ -16,20 +16,12 @@ struct corner {
     int64_t part;   /* first, as it begins the order in which corners are sorted */
     int32_t node;   /* then this, */
     int32_t facet;  /* of the set, and this */
-    int32_t vertex; /* of the facet */
-    int32_t side;   /* side of an interface on which the facet is */
+    int32_t number; /* among the corners of the set */
 };
 
 /* The corners[set->count * dim] of the set, whose facets are those faces of the table, sorted by part; with
- * `split`, a node has a part for each side of the boundary there. */
-void boundary_collect_corners(const struct face_table *table, const struct facet_set *set,
-                              const int64_t *face_of, bool split, struct corner *corners,
-                              int64_t *part_count);
-
-/* Append to corners[2 * set->count * dim], sorted by part, a part for each side with all corners of its
- * facets. Sides are parts of the set within which facets that share an edge (2D: a node) turn by less than 45
- * degrees; pieces are parts connected by nodes. group[set->count]: with `split` the side, else the piece of
- * each facet, numbered in the order of the facets. */
-MUST_CHECK enum status boundary_add_sides(const struct face_table *table, const struct facet_set *set,
-                                          bool split, struct corner *corners, int64_t *part_count,
-                                          int64_t *group, int64_t *group_count, struct error *error);
+ * `split`, a node has a part for each side of the boundary there. With sides, corners[2 * set->count * dim]:
+ * also a part for each side with all corners of its facets; and *sides is filled in. */
+MUST_CHECK enum status boundary_parts(const struct face_table *table, const struct facet_set *set,
+                                      const int64_t *face_of, bool split, struct boundary_sides *sides,
+                                      struct corner *corners, int64_t *part_count, struct error *error);

@@ -1,7 +1,7 @@
 /* The facets of a set: their faces in the table, their normals, and the sides that they form. */
-#include "approx/cells/parts.h"
 #include "approx/shape/boundary_private.h"
 
+#include "approx/cells/parts.h"
 #include "base/lists.h"
 #include "base/memory.h"
 #include "base/sets.h"
@@ -45,6 +45,15 @@ void boundary_unit_normal(const struct face_table *table, const int32_t *facet, 
     }
 }
 
+/* Whether two facets that meet on a ridge, given by their nodes, turn by less than 45 degrees. */
+static bool turns_little(const struct face_table *table, const int32_t *a, const int32_t *b)
+{
+    double na[3], nb[3], size;
+    boundary_unit_normal(table, a, na, &size);
+    boundary_unit_normal(table, b, nb, &size);
+    return vector_dot(3, na, nb) >= side_cosine;
+}
+
 /* By parts, nodes and facets. */
 static int compare_corners(const void *left, const void *right)
 {
@@ -54,133 +63,96 @@ static int compare_corners(const void *left, const void *right)
                                         &((const struct corner *)right)->node);
 }
 
-/* Whether two facets, given by their dim nodes, have an edge (2D: a node) in common. */
-static bool share_edge(int dim, const int32_t *a, const int32_t *b)
+/* The number of the corner, among all of the set, at node j of a ridge. */
+static int32_t ridge_corner(int dim, const struct ridge *ridge, int j)
 {
-    int shared = 0;
-    for (int i = 0; i < dim; i++) {
-        for (int k = 0; k < dim; k++) {
-            shared += a[i] == b[k];
-        }
-    }
-    return shared >= dim - 1;
+    return ridge->facet * dim + (ridge->corner + 1 + (dim == 2 || ridge->upward ? j : 1 - j)) % dim;
 }
 
-/* Whether two facets that meet at a node, given by their nodes, are on one side; in 3D they must share an
- * edge. */
-static bool of_one_side(const struct face_table *table, const int32_t *a, const int32_t *b)
+/* Join facets that are of one side in side[], and their corners at the nodes where they meet in around[]. */
+static enum status join_sides(const struct face_table *table, const struct facet_set *set,
+                              const int64_t *face_of, int32_t *side, int32_t *around, struct error *error)
 {
-    double na[3], nb[3], size;
-    if (!share_edge(table->dim, a, b)) {
-        return false;
-    }
-    boundary_unit_normal(table, a, na, &size);
-    boundary_unit_normal(table, b, nb, &size);
-    return vector_dot(3, na, nb) >= side_cosine;
-}
-
-static bool same_side(const struct face_table *table, const struct facet_set *set, const struct corner *a,
-                      const struct corner *b)
-{
-    return a->side == b->side && of_one_side(table, set->facet + (int64_t)a->facet * table->dim,
-                                             set->facet + (int64_t)b->facet * table->dim);
-}
-
-/* Number the parts of one node: corners first..last-1 joined through neighbours of one side. */
-static void split_node(const struct face_table *table, const struct facet_set *set, struct corner *corners,
-                       int64_t first, int64_t last, bool split, int64_t *part_count)
-{
-    for (int64_t i = first; i < last; i++) {
-        corners[i].part = -1;
-    }
-    for (int64_t seed = first; seed < last; seed++) {
-        if (corners[seed].part >= 0) {
-            continue;
-        }
-        corners[seed].part = *part_count;
-        for (bool grew = true; grew;) {
-            grew = false;
-            for (int64_t i = first; i < last; i++) {
-                for (int64_t k = first; corners[i].part < 0 && k < last; k++) {
-                    if (corners[k].part == *part_count &&
-                        (!split || same_side(table, set, &corners[i], &corners[k]))) {
-                        corners[i].part = *part_count;
-                        grew = true;
-                    }
+    int dim = table->dim;
+    int64_t count = set->count * dim;
+    const int32_t *cell = table->faces->cell;
+    NEW_SCRATCH(struct ridge, ridge, count, error);
+    ridges_list(dim, set->count, set->facet, ridge);
+    for (int64_t begin = 0, i = 0; i < count; i++) {
+        begin = memcmp(ridge[i].node, ridge[begin].node, sizeof ridge->node) == 0 ? begin : i;
+        for (int64_t k = begin; k < i; k++) {
+            int64_t f = ridge[i].facet, g = ridge[k].facet;
+            bool interface = table->cell_side != NULL &&
+                             table->cell_side[cell[2 * face_of[f]]] != table->cell_side[cell[2 * face_of[g]]];
+            if (!interface && turns_little(table, set->facet + f * dim, set->facet + g * dim)) {
+                set_join(side, (int32_t)f, (int32_t)g);
+                for (int j = 0; j < dim - 1; j++) {
+                    set_join(around, ridge_corner(dim, &ridge[i], j), ridge_corner(dim, &ridge[k], j));
                 }
             }
         }
-        ++*part_count;
     }
+    return STATUS_OK;
 }
 
-void boundary_collect_corners(const struct face_table *table, const struct facet_set *set,
-                              const int64_t *face_of, bool split, struct corner *corners, int64_t *part_count)
+/* Append the parts of whole sides, and number the groups. side, piece: the first facet of each. */
+static enum status add_sides(const struct facet_set *set, int dim, bool split, int32_t *side, int32_t *piece,
+                             struct corner *corners, int64_t *part_count, struct boundary_sides *sides,
+                             struct error *error)
 {
-    int dim = table->dim;
     int64_t count = set->count * dim;
-    for (int64_t i = 0; i < count; i++) {
-        corners[i] =
-            (struct corner){.node = set->facet[i], .vertex = (int32_t)(i % dim), .facet = (int32_t)(i / dim)};
-        if (table->cell_side != NULL) {
-            corners[i].side = table->cell_side[table->faces->cell[2 * face_of[i / dim]]];
-        }
-    }
-    qsort(corners, (size_t)count, sizeof *corners, compare_corners);
-    *part_count = 0;
-    for (int64_t first = 0; first < count;) {
-        int64_t last = first;
-        while (last < count && corners[last].node == corners[first].node) {
-            last++;
-        }
-        split_node(table, set, corners, first, last, split, part_count);
-        first = last;
-    }
-    qsort(corners, (size_t)count, sizeof *corners, compare_corners);
-}
-
-/* side, piece[set->count]: the first facet of the side and of the piece of each. */
-static void join_facets(const struct face_table *table, const struct facet_set *set,
-                        const struct corner *corners, int32_t *side, int32_t *piece)
-{
-    int64_t count = set->count * table->dim;
-    for (int64_t f = 0; f < set->count; f++) {
-        side[f] = piece[f] = (int32_t)f;
-    }
-    for (int64_t begin = 0, i = 0; i < count; i++) {
-        begin = corners[i].node == corners[begin].node ? begin : i;
-        set_join(piece, corners[begin].facet, corners[i].facet);
-        for (int64_t k = begin; k < i; k++) {
-            if (same_side(table, set, &corners[i], &corners[k])) {
-                set_join(side, corners[i].facet, corners[k].facet);
-            }
-        }
-    }
-}
-
-enum status boundary_add_sides(const struct face_table *table, const struct facet_set *set, bool split,
-                               struct corner *corners, int64_t *part_count, int64_t *group,
-                               int64_t *group_count, struct error *error)
-{
-    int dim = table->dim;
-    int64_t count = set->count * dim;
-    NEW_SCRATCH(int32_t, side, set->count, error);
-    NEW_SCRATCH(int32_t, piece, set->count, error);
     NEW_SCRATCH(int64_t, part, set->count, error);
-    join_facets(table, set, corners, side, piece);
-    *group_count = 0;
+    sides->node_average_count = *part_count;
+    RETURN_IF_ERROR(NEW_ARRAY(&sides->facet_group, set->count, error));
     for (int64_t f = 0; f < set->count; f++) {
         int32_t of_side = set_first(side, (int32_t)f);
         int32_t first = split ? of_side : set_first(piece, (int32_t)f);
-        group[f] = first == f ? (*group_count)++ : group[first];
+        sides->facet_group[f] = first == f ? sides->group_count++ : sides->facet_group[first];
         part[f] = of_side == f ? (*part_count)++ : part[of_side];
-        for (int k = 0; k < dim; k++) {
-            corners[count + f * dim + k] =
-                (struct corner){part[f], set->facet[f * dim + k], (int32_t)f, k, 0};
+        for (int64_t i = f * dim; i < (f + 1) * dim; i++) {
+            corners[count + i] = (struct corner){part[f], set->facet[i], (int32_t)f, (int32_t)i};
         }
     }
     qsort(corners, (size_t)(2 * count), sizeof *corners, compare_corners);
+    RETURN_IF_ERROR(NEW_ARRAY(&sides->group, *part_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&sides->flat, *part_count, error));
+    for (int64_t i = 0; i < 2 * count; i++) {
+        sides->group[corners[i].part] = sides->facet_group[corners[i].facet];
+    }
     return STATUS_OK;
+}
+
+enum status boundary_parts(const struct face_table *table, const struct facet_set *set,
+                           const int64_t *face_of, bool split, struct boundary_sides *sides,
+                           struct corner *corners, int64_t *part_count, struct error *error)
+{
+    int64_t count = set->count * table->dim;
+    NEW_SCRATCH(int32_t, side, set->count, error);
+    NEW_SCRATCH(int32_t, piece, set->count, error);
+    NEW_SCRATCH(int32_t, around, count, error);
+    NEW_SCRATCH(int64_t, part, count, error);
+    for (int64_t i = 0; i < count; i++) {
+        int32_t facet = (int32_t)(i / table->dim);
+        side[facet] = piece[facet] = facet;
+        around[i] = (int32_t)i;
+        corners[i] = (struct corner){0, set->facet[i], facet, (int32_t)i};
+    }
+    RETURN_IF_ERROR(join_sides(table, set, face_of, side, around, error));
+    qsort(corners, (size_t)count, sizeof *corners, compare_corners);
+    *part_count = 0;
+    for (int64_t i = 0; i < count; i++) {
+        int32_t own = corners[i].number;
+        if (i > 0 && corners[i].node == corners[i - 1].node) {
+            set_join(piece, corners[i - 1].facet, corners[i].facet);
+            set_join(around, split ? own : corners[i - 1].number, own);
+        }
+        int32_t first = set_first(around, own); /* its facet, and so the corner, comes first at the node */
+        part[own] = first == own ? (*part_count)++ : part[first];
+        corners[i].part = part[own];
+    }
+    qsort(corners, (size_t)count, sizeof *corners, compare_corners);
+    return sides == NULL ? STATUS_OK
+                         : add_sides(set, table->dim, split, side, piece, corners, part_count, sides, error);
 }
 
 /* Whether facets a and b that meet on a ridge, not of one side, do so at a re-entrant edge: b does not lie
@@ -203,7 +175,7 @@ static bool is_junction(const struct face_table *table, int kinds, const bool *h
     if (!meets && !(kinds & BOUNDARY_REENTRANT)) {
         return false;
     }
-    if (of_one_side(table, node + (int64_t)f * table->dim, node + (int64_t)g * table->dim)) {
+    if (turns_little(table, node + (int64_t)f * table->dim, node + (int64_t)g * table->dim)) {
         return meets && (kinds & BOUNDARY_JUNCTION_SMOOTH);
     }
     return (meets && (kinds & BOUNDARY_JUNCTION_SHARP)) ||

@@ -7,50 +7,27 @@
 
 static const int64_t chunk_points = 512;
 
-struct neighbours support_view(const struct support_lists *lists)
-{
-    return (struct neighbours){
-        .count = lists->count,
-        .ptr = lists->ptr,
-        .idx = lists->idx,
-        .widen = lists->widen,
-    };
-}
-
-/* The input of a table, and its points. */
-struct tabulation {
-    const struct mls *mls;
-    const double *nodes, *radius;
-    const struct neighbours *lists;
-    const double *x;
-    const char *what;
-};
-
 /* phi and, unless NULL, dphi of the points [first, last); the arrays begin with the first pair of these. */
-static enum status tabulate(const struct tabulation *table, int64_t first, int64_t last, double *phi,
+static enum status tabulate(const struct mls *mls, struct mls_support support, const struct neighbours *lists,
+                            const double *x, const char *what, int64_t first, int64_t last, double *phi,
                             double *dphi, struct error *error)
 {
-    const struct neighbours *lists = table->lists;
     FREED_BY(mls_work_free) struct mls_work work = {0};
-    int dim = table->mls->dim;
     for (int64_t p = first; p < last; p++) {
         enum mls_verdict verdict;
         int64_t pair = lists->ptr[p], at = pair - lists->ptr[first];
-        struct mls_support support = {.x = table->x + p * dim,
-                                      .nodes = table->nodes,
-                                      .radius = table->radius,
-                                      .widen = lists->widen[p],
-                                      .neighbours = lists->idx + pair,
-                                      .count = lists->ptr[p + 1] - pair};
-        RETURN_IF_ERROR(mls_evaluate(table->mls, &support, &work, phi + at,
-                                     dphi != NULL ? dphi + at * dim : NULL, &verdict, error));
+        support.x = x + p * mls->dim;
+        support.widen = lists->widen[p];
+        support.neighbours = lists->idx + pair;
+        support.count = lists->ptr[p + 1] - pair;
+        RETURN_IF_ERROR(mls_evaluate(mls, &support, &work, phi + at,
+                                     dphi != NULL ? dphi + at * mls->dim : NULL, &verdict, error));
         if (verdict != MLS_GOOD) {
-            char place[96];
-            point_text(dim, support.x, place);
-            return fail(error, STATUS_VERDICT,
-                        "%s: row %lld at %s: %s of %s on %lld nodes: widen the support", table->what,
-                        (long long)p, place, mls_verdict_text(verdict), basis_names[table->mls->basis],
-                        (long long)support.count);
+            return fail(
+                error, STATUS_VERDICT, "%s: row %lld at %s: %s of %s on %lld nodes: widen the support", what,
+                (long long)p, POINT_TEXT(mls->dim, support.x),
+                verdict == MLS_TOO_FEW ? "too few neighbours" : "singular or ill-conditioned moment matrix",
+                basis_names[mls->basis], (long long)support.count);
         }
     }
     return STATUS_OK;
@@ -60,7 +37,7 @@ enum status shape_table(const struct mls *mls, const double *nodes, const double
                         const struct neighbours *neighbours, const double *x, const char *what, double *phi,
                         double *dphi, struct error *error)
 {
-    const struct tabulation table = {mls, nodes, radius, neighbours, x, what};
+    const struct mls_support support = {.nodes = nodes, .radius = radius};
     struct first_failure failure = {STATUS_OK};
     int64_t count = neighbours->count;
 #pragma omp parallel for schedule(dynamic, 1)
@@ -68,10 +45,10 @@ enum status shape_table(const struct mls *mls, const double *nodes, const double
         struct error own;
         int64_t last = first + chunk_points < count ? first + chunk_points : count;
         int64_t pair = neighbours->ptr[first];
-        note_failure(
-            &failure, first,
-            tabulate(&table, first, last, phi + pair, dphi != NULL ? dphi + pair * mls->dim : NULL, &own),
-            &own, error);
+        note_failure(&failure, first,
+                     tabulate(mls, support, neighbours, x, what, first, last, phi + pair,
+                              dphi != NULL ? dphi + pair * mls->dim : NULL, &own),
+                     &own, error);
     }
     return failure.status;
 }

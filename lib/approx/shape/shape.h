@@ -6,17 +6,6 @@
 #include "approx/cells/cells.h"
 #include "approx/support/support.h"
 
-/* A view of lists of neighbours (CSR), made by support_build. */
-struct neighbours {
-    int64_t count;
-    const int64_t *ptr; /* count + 1 */
-    const int32_t *idx;
-    const double *widen; /* count */
-};
-
-/* A view of lists. */
-struct neighbours support_view(const struct support_lists *lists);
-
 /* phi[ptr[count]] and, unless NULL, dphi[ptr[count] * dim] (1/m) at the points x[count * dim]. `what` names
  * the points in messages. STATUS_VERDICT, naming the first such point, if a point has too few neighbours or
  * an ill-conditioned moment matrix. Threaded; the same bits for any number of threads. */

@@ -1,10 +1,12 @@
 #include "approx/support/support.h"
 
+#include "base/lists.h"
 #include "base/memory.h"
 #include "base/vector.h"
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #define SUPPORT_WIDEN_LIMIT 8.0
@@ -17,6 +19,7 @@ struct search {
     struct visibility_places places;
     const double *x;
     const char *what;
+    double *steepness; /* of each point, as of its support */
 };
 
 /* One thread's growing lists and scratch. */
@@ -24,9 +27,9 @@ struct worker {
     struct index_list list;
     struct visibility_work visibility;
     struct mls_work work;
-    double *order, *gradient;
+    struct placed *order;
+    double *gradient;
     int64_t order_room, gradient_room;
-    struct steep_points steep;
 };
 
 /* The support of a point. */
@@ -42,26 +45,20 @@ static const double widen_step = 1.05;
 static enum status keep_nearest(const struct point_grid *grid, const double *x, int64_t most, int32_t *index,
                                 int64_t *count, struct worker *worker, struct error *error)
 {
-    int dim = grid->dim;
     if (most <= 0 || *count <= most) {
         return STATUS_OK;
     }
     RETURN_IF_ERROR(GROW_ARRAY(&worker->order, *count, &worker->order_room, error));
-    double *distance2 = worker->order;
     for (int64_t i = 0; i < *count; i++) {
-        distance2[i] = vector_distance2(dim, x, grid->x + (int64_t)index[i] * dim);
+        const double *y = grid->x + (int64_t)index[i] * grid->dim;
+        worker->order[i] = (struct placed){vector_distance2(grid->dim, x, y), index[i]};
     }
-    /* Drop the farthest (of equals the highest index) until `most` remain; the order stays ascending. */
-    for (; *count > most; --*count) {
-        int64_t farthest = 0;
-        for (int64_t i = 1; i < *count; i++) {
-            farthest = distance2[i] >= distance2[farthest] ? i : farthest;
-        }
-        for (int64_t i = farthest; i + 1 < *count; i++) {
-            index[i] = index[i + 1];
-            distance2[i] = distance2[i + 1];
-        }
+    qsort(worker->order, (size_t)*count, sizeof *worker->order, compare_placed);
+    for (int64_t i = 0; i < most; i++) {
+        index[i] = (int32_t)worker->order[i].item;
     }
+    qsort(index, (size_t)most, sizeof *index, compare_int32);
+    *count = most;
     return STATUS_OK;
 }
 
@@ -209,24 +206,12 @@ static void worker_free(struct worker *worker)
     mls_work_free(&worker->work);
 }
 
-static enum status check_finite(const struct search *search, int64_t count, struct error *error)
-{
-    for (int64_t i = 0; i < count * search->grid->dim; i++) {
-        if (!isfinite(search->x[i])) {
-            return fail(error, STATUS_INPUT, "%s: row %lld: not a finite coordinate", search->what,
-                        (long long)(i / search->grid->dim));
-        }
-    }
-    return STATUS_OK;
-}
-
 /* The message for a point without a good support; the radius in it reveals a stray node. */
 static enum status fail_support(const struct search *search, int64_t row, const int32_t *index, int64_t count,
                                 enum mls_verdict verdict, struct error *error)
 {
-    char place[96], stray[96] = "";
+    char stray[96] = "";
     const double *radius = search->grid->radius;
-    point_text(search->grid->dim, search->x + row * search->grid->dim, place);
     if (count > 0) {
         int32_t widest = index[0];
         for (int64_t i = 1; i < count; i++) {
@@ -237,31 +222,29 @@ static enum status fail_support(const struct search *search, int64_t row, const 
     }
     return fail(error, STATUS_VERDICT,
                 "%s: row %lld at %s: no good support even at %g times the radius (%lld nodes within%s%s): %s",
-                search->what, (long long)row, place, SUPPORT_WIDEN_LIMIT, (long long)count,
-                search->visibility != NULL ? " reach through the cells" : "", stray,
+                search->what, (long long)row,
+                POINT_TEXT(search->grid->dim, search->x + row * search->grid->dim), SUPPORT_WIDEN_LIMIT,
+                (long long)count, search->visibility != NULL ? " reach through the cells" : "", stray,
                 verdict == MLS_TOO_FEW
                     ? "too few"
                     : "they lie in a plane or on a line (for mls2: on a quadric), or nearly so");
 }
 
-static void add_steep(struct steep_points *steep, const struct steep_points *more)
-{
-    if (more->steepness > steep->steepness) {
-        steep->point = more->point;
-        steep->steepness = more->steepness;
-    }
-    steep->count += more->count;
-}
-
 /* Append the neighbours of the points [first, last) to the worker's list; lists->ptr receives their
  * numbers. */
 static enum status build_chunk(const struct search *search, int64_t first, int64_t last,
-                               struct support_lists *lists, struct worker *worker, struct error *error)
+                               struct neighbours *lists, struct worker *worker, struct error *error)
 {
+    int dim = search->grid->dim;
     worker->list.count = 0;
-    worker->steep = (struct steep_points){0};
     for (int64_t p = first; p < last; p++) {
         struct found found;
+        for (const double *x = search->x + p * dim; x < search->x + (p + 1) * dim; x++) {
+            if (!isfinite(*x)) {
+                return fail(error, STATUS_INPUT, "%s: row %lld: not a finite coordinate", search->what,
+                            (long long)p);
+            }
+        }
         int64_t before = worker->list.count;
         RETURN_IF_ERROR(support_find(search, p, worker, &found, error));
         int64_t count = worker->list.count - before;
@@ -269,9 +252,7 @@ static enum status build_chunk(const struct search *search, int64_t first, int64
             return fail_support(search, p, worker->list.index + before, count, found.verdict, error);
         }
         lists->widen[p] = found.widen;
-        if (found.steepness > 0.0) {
-            add_steep(&worker->steep, &(struct steep_points){1, p, found.steepness});
-        }
+        search->steepness[p] = found.steepness;
         lists->ptr[p + 1] = count;
     }
     return STATUS_OK;
@@ -279,12 +260,12 @@ static enum status build_chunk(const struct search *search, int64_t first, int64
 
 /* Append a worker's list of the points [first, last) to `all`; turn counts into lists->ptr, and update the
  * statistics. */
-static enum status append_chunk(struct support_lists *lists, int64_t first, int64_t last,
-                                const struct worker *worker, struct index_list *all, struct error *error)
+static enum status append_chunk(const struct search *search, struct neighbours *lists, int64_t first,
+                                int64_t last, const struct worker *worker, struct index_list *all,
+                                struct error *error)
 {
     const struct index_list *own = &worker->list;
     RETURN_IF_ERROR(index_list_reserve(all, own->count, error));
-    add_steep(&lists->steep, &worker->steep);
     if (own->count > 0) {
         memcpy(all->index + all->count, own->index, (size_t)own->count * sizeof *own->index);
         all->count += own->count;
@@ -296,14 +277,19 @@ static enum status append_chunk(struct support_lists *lists, int64_t first, int6
         lists->ptr[p + 1] += lists->ptr[p];
         lists->widened += lists->widen[p] > 1.0;
         lists->widest = fmax(lists->widest, lists->widen[p]);
+        lists->steep.count += search->steepness[p] > 0.0;
+        if (search->steepness[p] > lists->steep.steepness) {
+            lists->steep.point = p;
+            lists->steep.steepness = search->steepness[p];
+        }
     }
     return STATUS_OK;
 }
 
 /* Build all chunks and append them to `all` in order. The failure of the first chunk that failed is
  * reported. */
-static enum status build_chunks(const struct search *search, struct support_lists *lists,
-                                struct index_list *all, struct error *error)
+static enum status build_chunks(const struct search *search, struct neighbours *lists, struct index_list *all,
+                                struct error *error)
 {
     int64_t chunk_count = (lists->count + chunk_points - 1) / chunk_points;
     enum status failure = STATUS_OK;
@@ -318,8 +304,8 @@ static enum status build_chunks(const struct search *search, struct support_list
             enum status outcome = build_chunk(search, first, last, lists, &worker, &own);
 #pragma omp ordered
             if (failure == STATUS_OK) {
-                failure =
-                    outcome == STATUS_OK ? append_chunk(lists, first, last, &worker, all, &own) : outcome;
+                failure = outcome == STATUS_OK ? append_chunk(search, lists, first, last, &worker, all, &own)
+                                               : outcome;
                 if (failure != STATUS_OK) {
                     *error = own;
                 }
@@ -330,40 +316,24 @@ static enum status build_chunks(const struct search *search, struct support_list
     return failure;
 }
 
-enum status support_space_build(const struct support_options *options, const struct cells *cells,
-                                const double *radius, struct support_space *space, struct error *error)
-{
-    *space = (struct support_space){.cells = *cells, .radius = radius};
-    RETURN_IF_ERROR(point_grid_build(&space->grid, cells->dim, cells->node_count, cells->x, radius, error));
-    return options->visibility == VISIBILITY_CELLS && cells->count > 0
-               ? visibility_build(cells, options->side, &space->grid, &space->visibility, error)
-               : STATUS_OK;
-}
-
-void support_space_free(struct support_space *space)
-{
-    visibility_free(&space->visibility);
-    point_grid_free(&space->grid);
-    *space = (struct support_space){0};
-}
-
-enum status support_build(const struct support_options *options, const struct support_space *space,
+enum status support_build(const struct support_options *options, const struct visibility *visibility,
                           const struct visibility_places *places, int64_t count, const double *x,
-                          const char *what, struct support_lists *lists, struct error *error)
+                          const char *what, struct neighbours *lists, struct error *error)
 {
     FREED_BY(index_list_free) struct index_list all = {0};
-    *lists = (struct support_lists){.count = count, .widest = 1.0};
+    *lists = (struct neighbours){.count = count, .widest = 1.0};
+    NEW_SCRATCH(double, steepness, count, error);
     struct search search = {.options = options,
-                            .grid = &space->grid,
-                            .visibility = space->visibility.grid != NULL ? &space->visibility : NULL,
+                            .grid = &visibility->grid,
+                            .visibility = visibility->across != NULL ? visibility : NULL,
                             .x = x,
-                            .what = what};
+                            .what = what,
+                            .steepness = steepness};
     RETURN_IF_ERROR(NEW_ARRAY(&lists->ptr, count + 1, error));
     RETURN_IF_ERROR(NEW_ARRAY(&lists->widen, count, error));
     if (places != NULL) {
         search.places = *places;
     }
-    RETURN_IF_ERROR(check_finite(&search, count, error));
     RETURN_IF_ERROR(build_chunks(&search, lists, &all, error));
     lists->idx = array_grow(all.index, all.count, sizeof *all.index); /* release what is not used */
     if (lists->idx == NULL) {
@@ -373,8 +343,8 @@ enum status support_build(const struct support_options *options, const struct su
     return STATUS_OK;
 }
 
-void support_free(struct support_lists *lists)
+void support_free(struct neighbours *lists)
 {
     FREE_ALL(lists->ptr, lists->idx, lists->widen);
-    *lists = (struct support_lists){0};
+    *lists = (struct neighbours){0};
 }

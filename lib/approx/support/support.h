@@ -27,8 +27,8 @@ struct steep_points {
     double steepness; /* and its largest |grad phi| times the spacing */
 };
 
-/* Neighbour lists of `count` points (CSR). */
-struct support_lists {
+/* Neighbour lists of `count` points (CSR); of a view of lists elsewhere only the first four. */
+struct neighbours {
     int64_t count;
     int64_t *ptr;    /* count + 1 */
     int32_t *idx;    /* ptr[count] node indices, ascending within a point */
@@ -48,35 +48,18 @@ MUST_CHECK enum status nodes_spacing(int dim, int64_t node_count, const double *
 MUST_CHECK enum status support_radii(const struct support_options *options, int64_t node_count,
                                      const double *spacing, double *radius, struct error *error);
 
-/* The nodes of a body with their support radii, and their visibility through its cells. If cells have sides
- * (support_options.side), a neighbour of a point is a node of the cells on the point's side. So shape
- * functions have a kink at an interface, like a displacement where the stiffness jumps. Points of faces and
- * nodes on an interface take the lowest of the sides that meet there, so that the field has a single value
- * there. The arrays of the cells and the radii are the caller's and must outlive this. */
-struct support_space {
-    struct cells cells;
-    const double *radius;
-    struct point_grid grid;
-    struct visibility visibility; /* where neighbours must be visible through the cells */
-};
-
-/* Fill in a space, which must not be moved or copied: its visibility points to its grid. radius[node_count],
- * m. Errors: STATUS_INPUT for cells that share a face with more than one other. */
-MUST_CHECK enum status support_space_build(const struct support_options *options, const struct cells *cells,
-                                           const double *radius, struct support_space *space,
-                                           struct error *error);
-void support_space_free(struct support_space *space);
-
-/* The neighbour lists of points x[count * dim] in the cells of `places` (NULL: not known); `what` names these
- * in messages. Points that have no good support on their side of the interfaces, e.g. in a sliver, see the
- * whole body. Threaded; the result does not depend on the number of threads. Widening ends at eightfold:
- * gradients may exceed their bound then, as little as any of these radii lets them (lists->steep).
- * STATUS_VERDICT, naming the point, if no moment matrix is well-conditioned; without options->widen the shape
- * functions report that. STATUS_INPUT for coordinates that are not finite. */
-MUST_CHECK enum status support_build(const struct support_options *options, const struct support_space *space,
+/* The neighbour lists of points x[count * dim] in the cells of `places` (NULL: not known), by the rule and
+ * the sides of `visibility`; `what` names these in messages. Points that have no good support on their side
+ * of the interfaces, e.g. in a sliver, see the whole body. Threaded; the result does not depend on the number
+ * of threads. Widening ends at eightfold: gradients may exceed their bound then, as little as any of these
+ * radii lets them (lists->steep). STATUS_VERDICT, naming the point, if no moment matrix is well-conditioned;
+ * without options->widen the shape functions report that. STATUS_INPUT for coordinates that are not finite.
+ */
+MUST_CHECK enum status support_build(const struct support_options *options,
+                                     const struct visibility *visibility,
                                      const struct visibility_places *places, int64_t count, const double *x,
-                                     const char *what, struct support_lists *lists, struct error *error);
-void support_free(struct support_lists *lists);
+                                     const char *what, struct neighbours *lists, struct error *error);
+void support_free(struct neighbours *lists);
 
 /* Print "(x, y[, z])" of a point into text[96], for messages; returns text. POINT_TEXT: a text that lasts as
  * long as the block. */

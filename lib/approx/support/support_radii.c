@@ -5,26 +5,6 @@
 
 #include <math.h>
 
-static bool is_other(const void *node, int32_t other)
-{
-    return *(const int64_t *)node != other;
-}
-
-/* Mean distance of a node from the nearest others. */
-static enum status spacing_of(const struct point_grid *grid, int64_t node, double *spacing,
-                              struct error *error)
-{
-    struct nearest_nodes nearest;
-    RETURN_IF_ERROR(point_grid_nearest(grid, grid->x + node * grid->dim, 2 * grid->dim, is_other, &node,
-                                       &nearest, error));
-    *spacing = 0.0;
-    for (int64_t i = 0; i < nearest.count; i++) {
-        *spacing += nearest.distance[i];
-    }
-    *spacing /= (double)nearest.count;
-    return STATUS_OK;
-}
-
 enum status nodes_spacing(int dim, int64_t node_count, const double *x, double *spacing, struct error *error)
 {
     FREED_BY(point_grid_free) struct point_grid grid = {0};
@@ -41,7 +21,13 @@ enum status nodes_spacing(int dim, int64_t node_count, const double *x, double *
     }
     RETURN_IF_ERROR(point_grid_build(&grid, dim, node_count, x, radius, error));
     for (int64_t n = 0; n < node_count; n++) {
-        RETURN_IF_ERROR(spacing_of(&grid, n, &spacing[n], error));
+        struct nearest_nodes nearest; /* the node itself, too */
+        RETURN_IF_ERROR(point_grid_nearest(&grid, x + n * dim, 2 * dim + 1, NULL, NULL, &nearest, error));
+        spacing[n] = 0.0;
+        for (int64_t i = 0; i < nearest.count; i++) {
+            spacing[n] += nearest.distance[i];
+        }
+        spacing[n] /= (double)(nearest.count - 1);
     }
     return STATUS_OK;
 }

@@ -34,28 +34,25 @@ static bool is_end(const struct visibility *visibility, int64_t s)
     return next < 0 || (side != NULL && side[next] != side[s / (visibility->cells.dim + 1)]);
 }
 
-/* Parts of the cells: of each cell, and of each node, -1: of several. */
-struct parts {
-    const int32_t *cell, *node;
-};
-
-/* Whether a node is of a part. */
-static bool is_of(const struct visibility *visibility, const struct parts *parts, int32_t node, int32_t part)
+/* Whether a node is of a part of the cells: of_cell[], of_node[], -1: of several. */
+static bool is_of(const struct visibility *visibility, const int32_t *of_cell, const int32_t *of_node,
+                  int32_t node, int32_t part)
 {
-    if (parts->node[node] >= 0) {
-        return parts->node[node] == part;
+    if (of_node[node] >= 0) {
+        return of_node[node] == part;
     }
     for (int64_t s = visibility->star_ptr[node]; s < visibility->star_ptr[node + 1]; s++) {
-        if (parts->cell[visibility->star[s]] == part) {
+        if (of_cell[visibility->star[s]] == part) {
             return true;
         }
     }
     return false;
 }
 
-static struct parts sides_of(const struct visibility *visibility)
+/* Whether a node is of a side. */
+static bool is_on(const struct visibility *visibility, int32_t node, int32_t side)
 {
-    return (struct parts){visibility->cell_side, visibility->node_side};
+    return is_of(visibility, visibility->cell_side, visibility->node_side, node, side);
 }
 
 /* The bodies: cells with a common face on one side. of_cell[cells.count], of_node[cells.node_count]. */
@@ -95,7 +92,7 @@ static void note_facet(struct visibility *visibility, const int32_t *facet, int3
     int dim = visibility->cells.dim;
     const double *x = visibility->cells.x, *y = x + (int64_t)node * dim;
     double area[3] = {0.0, 0.0, 0.0}, middle[3], from[3], radius = 0.0;
-    double tolerance = COARSE_ROUND_OFF * visibility->grid->radius[node];
+    double tolerance = COARSE_ROUND_OFF * visibility->grid.radius[node];
     face_area_vector(dim, x, facet, area);
     vector_middle(dim, x, dim, facet, middle);
     vector_subtract(dim, y, middle, from);
@@ -123,33 +120,39 @@ static void note_facet(struct visibility *visibility, const int32_t *facet, int3
 }
 
 /* Note what a face of a cell, at which sight ends, may hide from points on its side. */
-static enum status note_face(struct visibility *visibility, int64_t cell, int vertex,
-                             const struct parts *bodies, struct index_list *near, struct error *error)
+static enum status note_face(struct visibility *visibility, int64_t cell, int vertex, const int32_t *of_cell,
+                             const int32_t *of_node, struct index_list *near, struct error *error)
 {
     const struct cells *cells = &visibility->cells;
-    const struct parts sides = sides_of(visibility);
     int32_t facet[3];
     cell_face(cells, cell, vertex, facet);
     struct box box = box_of_nodes(cells->dim, cells->x, facet, cells->dim);
     near->count = 0;
-    RETURN_IF_ERROR(point_grid_query_box(visibility->grid, box.low, box.high, 1.0, near, error));
+    RETURN_IF_ERROR(point_grid_query_box(&visibility->grid, box.low, box.high, 1.0, near, error));
     for (int64_t i = 0; i < near->count; i++) {
         int32_t node = near->index[i];
-        if (sides.cell == NULL || is_of(visibility, &sides, node, sides.cell[cell])) {
-            note_facet(visibility, facet, node, !is_of(visibility, bodies, node, bodies->cell[cell]));
+        if (visibility->cell_side == NULL || is_on(visibility, node, visibility->cell_side[cell])) {
+            note_facet(visibility, facet, node, !is_of(visibility, of_cell, of_node, node, of_cell[cell]));
         }
     }
     return STATUS_OK;
 }
 
-enum status visibility_build(const struct cells *cells, const int32_t *cell_side,
-                             const struct point_grid *grid, struct visibility *visibility,
-                             struct error *error)
+enum status visibility_build(const struct cells *cells, const double *radius, enum visibility_rule rule,
+                             const int32_t *cell_side, struct visibility *visibility, struct error *error)
 {
     FREED_BY(index_list_free) struct index_list near = {0};
     int corners = cells->dim + 1;
-    RETURN_IF_ERROR(visibility_build_cells(cells, visibility, error));
-    visibility->grid = grid;
+    if (rule == VISIBILITY_CELLS && cells->count > 0) {
+        RETURN_IF_ERROR(visibility_build_cells(cells, visibility, error));
+    } else {
+        *visibility = (struct visibility){.cells = *cells};
+    }
+    RETURN_IF_ERROR(
+        point_grid_build(&visibility->grid, cells->dim, cells->node_count, cells->x, radius, error));
+    if (visibility->across == NULL) {
+        return STATUS_OK;
+    }
     visibility->cell_side = cell_side;
     NEW_SCRATCH(int32_t, of_cell, cells->count, error);
     NEW_SCRATCH(int32_t, of_node, cells->node_count, error);
@@ -164,8 +167,8 @@ enum status visibility_build(const struct cells *cells, const int32_t *cell_side
     }
     for (int64_t s = 0; s < cells->count * corners; s++) {
         if (is_end(visibility, s)) {
-            RETURN_IF_ERROR(note_face(visibility, s / corners, (int)(s % corners),
-                                      &(struct parts){of_cell, of_node}, &near, error));
+            RETURN_IF_ERROR(
+                note_face(visibility, s / corners, (int)(s % corners), of_cell, of_node, &near, error));
         }
     }
     return STATUS_OK;
@@ -173,6 +176,7 @@ enum status visibility_build(const struct cells *cells, const int32_t *cell_side
 
 void visibility_free(struct visibility *visibility)
 {
+    point_grid_free(&visibility->grid);
     FREE_ALL(visibility->node_side, visibility->across, visibility->star_ptr, visibility->star,
              visibility->hidden_from);
     *visibility = (struct visibility){0};
@@ -287,11 +291,10 @@ enum status visibility_filter(const struct visibility *visibility, double widen,
                               int64_t *count, struct visibility_work *work, struct error *error)
 {
     int64_t kept = 0;
-    const struct parts sides = sides_of(visibility);
-    bool whole = sides.cell != NULL && work->side < 0; /* hidden_from is for sides */
+    bool whole = visibility->cell_side != NULL && work->side < 0; /* hidden_from is for sides */
     for (int64_t i = 0; i < *count; i++) {
         bool seen = true;
-        if (work->side >= 0 && !is_of(visibility, &sides, index[i], work->side)) {
+        if (work->side >= 0 && !is_on(visibility, index[i], work->side)) {
             continue;
         }
         if (widen > 1.0 || work->outside || whole || may_be_hidden(visibility, index[i], work->x)) {

@@ -10,6 +10,7 @@
 
 #include "approx/cells/cells.h"
 #include "approx/points/point_grid.h"
+#include "base/queue.h"
 
 /* The neighbours among the nodes within their radius: if there are cells, those visible through these; or
  * all. */
@@ -18,10 +19,14 @@ enum visibility_rule { VISIBILITY_CELLS, VISIBILITY_DISTANCE, VISIBILITY_RULE_CO
 /* Names for command lines and headers: "cells", "distance". */
 extern const char *const visibility_names[VISIBILITY_RULE_COUNT];
 
-/* The cells with their sides, and the grid, are the caller's and must outlive this. */
+/* The nodes of a body with their support radii, and its cells. If cells have sides, a neighbour of a point is
+ * a node of the cells on the point's side. So shape functions have a kink at an interface, like a
+ * displacement where the stiffness jumps. Points of faces and nodes on an interface take the lowest of the
+ * sides that meet there, so that the field has a single value there. The arrays of the cells, their sides and
+ * the radii are the caller's and must outlive this. */
 struct visibility {
     struct cells cells;
-    const struct point_grid *grid;
+    struct point_grid grid;   /* of the nodes; by distance, or without cells, there is nothing else */
     const int32_t *cell_side; /* of each cell: its side of the interfaces at which sight ends; NULL: none */
     int32_t *node_side;       /* of each node: the side, -1 on an interface; NULL without interfaces */
     int32_t *across;          /* cells_across */
@@ -32,13 +37,11 @@ struct visibility {
                             directions; infinite: none does */
 };
 
-/* Errors: STATUS_INPUT for cells that share a face with more than one other; STATUS_SYSTEM (memory). */
-MUST_CHECK enum status visibility_build(const struct cells *cells, const int32_t *cell_side,
-                                        const struct point_grid *grid, struct visibility *visibility,
-                                        struct error *error);
-/* Only `across` and the stars, for paths along edges (edge_paths.h). Errors as above. */
-MUST_CHECK enum status visibility_build_cells(const struct cells *cells, struct visibility *visibility,
-                                              struct error *error);
+/* radius[node_count], m; cell_side[count], or NULL. Errors: STATUS_INPUT for cells that share a face with
+ * more than one other; STATUS_SYSTEM (memory). */
+MUST_CHECK enum status visibility_build(const struct cells *cells, const double *radius,
+                                        enum visibility_rule rule, const int32_t *cell_side,
+                                        struct visibility *visibility, struct error *error);
 void visibility_free(struct visibility *visibility);
 
 /* The cells that contain points. All members zero: not known; they are searched for. A point outside of all
@@ -102,3 +105,46 @@ MUST_CHECK enum status visibility_walk(const struct visibility *visibility, cons
  * cell. */
 MUST_CHECK enum status visibility_locate(const struct visibility *visibility, const double *x,
                                          struct visibility_work *work, struct error *error);
+
+/* ---- paths ---- */
+
+/* Only `across` and the stars, for paths along edges. Errors as above. */
+MUST_CHECK enum status visibility_build_cells(const struct cells *cells, struct visibility *visibility,
+                                              struct error *error);
+
+/* Places that are connected to a node, so that measured values do not act across gaps and slits.
+ *
+ * A place belongs to the node nearest to it. It is connected to another node when the straight segment
+ * between the two nodes stays within the cells, or when the shortest path along edges of the cells is at most
+ * twice as long as that segment. So places around a mild fold of the boundary are connected, the two faces of
+ * a slit are not. */
+
+/* The longest path that connects two places, by their distance. */
+#define PATH_MOST_DETOUR 2.0
+
+enum path_verdict { PATH_UNKNOWN, PATH_GOOD, PATH_NONE };
+
+struct edge_paths {
+    struct visibility visibility; /* its cells only */
+    struct visibility_work work;
+    int64_t place_count;
+    int32_t *node;    /* place_count: the node to which each place belongs; -1: no node is in a cell */
+    uint8_t *verdict; /* place_count, enum path_verdict: whether each place is connected to `from` */
+    int32_t from;     /* the node; -1: none yet */
+    double searched;  /* shortest paths from it are known up to this length, m; negative: none */
+    double *length;   /* node_count: their lengths; infinite: longer */
+    struct queue queue;
+};
+
+/* place[place_count * stride], the first dim of each row, in units of `unit` m. The cells must outlive this.
+ * Errors: STATUS_INPUT for cells that share a face with more than one other; STATUS_SYSTEM (memory). */
+MUST_CHECK enum status edge_paths_build(const struct cells *cells, int64_t place_count, int64_t stride,
+                                        const double *place, double unit, struct edge_paths *paths,
+                                        struct error *error);
+void edge_paths_free(struct edge_paths *paths);
+
+/* Set the node `from`; the paths known so far are kept if it is the same as before. */
+void edge_paths_begin(struct edge_paths *paths, int32_t from);
+
+MUST_CHECK enum status edge_paths_reach(struct edge_paths *paths, int64_t place, bool *reached,
+                                        struct error *error);

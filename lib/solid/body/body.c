@@ -1,6 +1,6 @@
 #include "solid/body/body.h"
 
-#include "approx/cells/renumber.h"
+#include "approx/cells/cells.h"
 #include "base/memory.h"
 #include "solid/body/kernel.h"
 #include "solid/body/merged_cells.h"

@@ -1,6 +1,6 @@
 /* The rows from which smoothed cells are computed: which edges, vertices and boundary faces each cell uses,
  * checks of the given tables, and the rows that this process needs. See smoothed_cells.h. */
-#include "approx/cells/renumber.h"
+#include "approx/cells/cells.h"
 #include "base/chunks.h"
 #include "base/lists.h"
 #include "base/memory.h"

@@ -1,6 +1,6 @@
 #include "solid/preconditioner/coarse_space.h"
 
-#include "approx/cells/renumber.h"
+#include "approx/cells/cells.h"
 #include "base/chunks.h"
 #include "base/memory.h"
 #include "base/processor.h"

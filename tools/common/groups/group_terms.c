@@ -205,7 +205,7 @@ static int64_t nearest(const struct items *items, const double *point)
     double least = INFINITY;
     for (int64_t i = 0; i < items->count; i++) {
         double centre[3];
-        item_centre(items, i, centre);
+        vector_middle(items->dim, items->x, items->corners, items->item + i * items->corners, centre);
         double square = vector_distance2(items->dim, centre, point);
         if (square < least) {
             least = square;

@@ -1,6 +1,6 @@
 #include "images/images.h"
 
-#include "approx/cells/raster.h"
+#include "approx/cells/cells.h"
 #include "base/box.h"
 #include "base/memory.h"
 #include "base/options.h"
