@@ -93,7 +93,7 @@ TEST(enclosed_volume)
         body_gradient(&body, F);
         for (int64_t q = 0; q < body.point_count; q++) {
             sum += body.weight[q] * body.J[q];
-            averages += body.weight[q] * determinant(F + 9 * body.order[q]);
+            averages += body.weight[q] * determinant(F + 9 * body.order.points[q]);
         }
         for (int64_t f = 0; f < sample->assembly.faces.count; f++) {
             inside += sample->assembly.faces.cell[2 * f + 1] < 0 ? volume_below(sample, f, u) : 0.0;

@@ -141,7 +141,7 @@ static void check_shares(const struct sample *sample, const struct body *body, c
     for (int64_t q = 0; q < body->point_count; q++) {
         whole += body->weight[q];
         for (int64_t s = q * vertices; s < (q + 1) * vertices; s++) {
-            int32_t node = sample->vertex[body->order[q] * vertices + s - q * vertices];
+            int32_t node = sample->vertex[body->order.points[q] * vertices + s - q * vertices];
             volume += volumes->share[s];
             assert_true(at_edge[node] == !(volumes->share[s] > 0.0));
         }
@@ -166,8 +166,8 @@ TEST_IN_EACH_DIM(edges)
     one.at_edge = three.at_edge = other.at_edge = at_edge;
     three.group = (int32_t[]){0, 0, 1};
     FREED_BY(body_free)
-    struct body body = make_body(&sample, &one),
-                mixed = make_body(&sample, &three), logarithmic = make_body(&sample, &other);
+    struct body body = make_body(&sample, &one), mixed = make_body(&sample, &three),
+                logarithmic = make_body(&sample, &other);
     double *u = linear_field(&sample, (double[]){1.01, 0, 0, 0, 1.01, 0, 0, 0, 1.01}, NULL);
     double pressure = material_pressure(&one.material[0], dim == 2 ? 1.0201 : 1.030301);
     (void)body_energy(&body, u);

@@ -23,10 +23,10 @@ static void build(struct cube *cube, int dim, double poisson_ratio, bool penalis
     if (penalised) {
         const int32_t idx[] = {3, 7, 11};
         const double phi[] = {0.2, 0.5, 0.3}, direction[] = {0.6, 0.8, 0.0};
-        constraint_rows_init(&system->penalties, dim);
-        GOOD(constraint_rows_add(&system->penalties, 3, idx, phi, direction, 0.0, 0, 0, 0, &error));
-        ARRAY(system->penalty_stiffness, 1);
-        system->penalty_stiffness[0] = 300.0;
+        constraint_rows_init(&system->penalties.rows, dim);
+        GOOD(constraint_rows_add(&system->penalties.rows, 3, idx, phi, direction, 0.0, 0, 0, 0, &error));
+        ARRAY(system->penalties.stiffness, 1);
+        system->penalties.stiffness[0] = 300.0;
     }
     ARRAY(cube->K, size * size);
     GOOD(stiffness_rows_begin(system, &rows, &error));
@@ -41,8 +41,8 @@ static void build(struct cube *cube, int dim, double poisson_ratio, bool penalis
     for (int64_t p = 0; p < n; p++) {
         stiffness_row_make(&rows, (int32_t)p, n, place, &row, block);
         for (int64_t i = 0; i < n * dim * dim; i++) {
-            int64_t from = system->body.node_order[p] * dim + i / dim % dim;
-            cube->K[from * size + system->body.node_order[i / (dim * dim)] * dim + i % dim] = block[i];
+            int64_t from = system->body.order.nodes[p] * dim + i / dim % dim;
+            cube->K[from * size + system->body.order.nodes[i / (dim * dim)] * dim + i % dim] = block[i];
         }
     }
     GOOD(inverse_stiffness_factor(system, &cube->factor, &error));
@@ -163,7 +163,7 @@ TEST(stretches_make_no_difference)
         build(&cube, 3, 0.49, true, 0.0);
         struct solid_system *system = &cube.l.system;
         for (int64_t q = 0; q < system->body.point_count && weak == 1; q++) {
-            int64_t node = system->body.node_order[smoothed_cells_node(&system->body, q, 0)];
+            int64_t node = system->body.order.nodes[smoothed_cells_node(&system->body, q, 0)];
             system->body.weight[q] *= system->X[3 * node] < 0.7 * system->X[3 * (cube.n - 1)] ? 1e-12 : 1.0;
         }
         FREED_BY(inverse_factor_free) struct inverse_factor whole = {0};

@@ -187,8 +187,8 @@ TEST_IN_EACH_DIM(groups)
             assert_true(smoothed_cells_group_end(&body, q) <= block->first_point + block->point_count);
             assert_int_equal(body.material[first], body.material[q]);
             if (first != q) {
-                assert_true(cell_quality(&sample.assembly.cells, body.order[q]) < POOR_QUALITY);
-                assert_true(cell_quality(&sample.assembly.cells, body.order[first]) > POOR_QUALITY);
+                assert_true(cell_quality(&sample.assembly.cells, body.order.points[q]) < POOR_QUALITY);
+                assert_true(cell_quality(&sample.assembly.cells, body.order.points[first]) > POOR_QUALITY);
                 merged++;
             }
         }

@@ -45,7 +45,7 @@ static void add_force(const struct run *run, const struct average *average, cons
 static void add_conditions(const struct run *run, struct totals *totals)
 {
     const struct solid_system *system = &run->model->system;
-    const struct constraint_rows *rows = &system->rows, *penalties = &system->penalties;
+    const struct constraint_rows *rows = &system->rows, *penalties = &system->penalties.rows;
     int dim = totals->dim;
     double force[3];
     for (int64_t r = 0; r < rows->count; r++) {

@@ -187,7 +187,7 @@ enum status assembly_build(struct assembly *input, struct solid_system *system, 
     input->curves = NULL;
     input->curve_count = 0;
     constraint_rows_init(&system->rows, system->dim);
-    constraint_rows_init(&system->penalties, system->dim);
+    constraint_rows_init(&system->penalties.rows, system->dim);
     RETURN_IF_ERROR(NEW_ARRAY(&system->factor, system->curve_count, error));
     RETURN_IF_ERROR(lump_mass(input, system, error));
     RETURN_IF_ERROR(build_body(input, system, error));

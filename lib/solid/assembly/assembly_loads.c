@@ -13,9 +13,9 @@
 /* Append an empty dead load. */
 static enum status new_load(struct solid_system *system, int32_t curve, double **force, struct error *error)
 {
-    RETURN_IF_ERROR(RESIZE_ARRAY(&system->loads, system->load_count + 1, error));
+    RETURN_IF_ERROR(RESIZE_ARRAY(&system->acting.loads, system->acting.load_count + 1, error));
     RETURN_IF_ERROR(NEW_ARRAY(force, system->node_count * system->dim, error));
-    system->loads[system->load_count++] = (struct dead_load){*force, curve};
+    system->acting.loads[system->acting.load_count++] = (struct dead_load){*force, curve};
     return STATUS_OK;
 }
 
@@ -44,14 +44,14 @@ static enum status add_cells(const struct assembly *input, struct body *body, do
     SCRATCH double *mass = NULL; /* of each edge */
     RETURN_IF_ERROR(NEW_ARRAY(&mass, table->row_count, error));
     for (int64_t q = 0; q < body->point_count * edges; q++) {
-        int64_t c = body->order[q / edges];
+        int64_t c = body->order.points[q / edges];
         mass[smoothed_cells_edge(body, q / edges, (int)(q % edges))] +=
             input->weight[c] * input->materials.items[input->materials.of_cell[c]].density / edges;
     }
     for (int64_t r = 0; r < table->row_count; r++) {
         int64_t at = table->ptr[r];
         add_weight(input, mass[r], table->ptr[r + 1] - at, table->idx + at, table->value + at,
-                   body->node_order, force);
+                   body->order.nodes, force);
     }
     body_gather(body, body->dim, force);
     return STATUS_OK;
@@ -109,8 +109,8 @@ static enum status add_pressure(const struct assembly *input, const struct load 
 {
     const struct facet_set *set = &load->facets;
     int64_t count = set->count * system->dim;
-    RETURN_IF_ERROR(RESIZE_ARRAY(&system->pressures, system->pressure_count + 1, error));
-    struct pressure_load *pressure = &system->pressures[system->pressure_count++];
+    RETURN_IF_ERROR(RESIZE_ARRAY(&system->acting.pressures, system->acting.pressure_count + 1, error));
+    struct pressure_load *pressure = &system->acting.pressures[system->acting.pressure_count++];
     *pressure = (struct pressure_load){
         .pressure = load->pressure, .curve = load->curve, .facet_count = set->count, .facet = set->facet};
     pressure->is_fluid = load->is_fluid;
@@ -185,7 +185,7 @@ static enum status add_springs(const struct assembly *input, int64_t number,
             RETURN_IF_ERROR(system_append_penalty(system, &average, axis + k * dim, 0.0, support->curve,
                                                   (int32_t)(input->condition_count + number), points->node[p],
                                                   stiffness, 0.0, error));
-            system->spring_count++;
+            system->penalties.spring_count++;
         }
     }
     return STATUS_OK;
@@ -227,8 +227,8 @@ static enum status add_support(const struct assembly *input, int64_t number, str
 static enum status add_membrane(const struct assembly *input, const struct membrane_condition *section,
                                 struct solid_system *system, struct error *error)
 {
-    RETURN_IF_ERROR(RESIZE_ARRAY(&system->membranes, system->membrane_count + 1, error));
-    struct membrane *added = &system->membranes[system->membrane_count++];
+    RETURN_IF_ERROR(RESIZE_ARRAY(&system->acting.membranes, system->acting.membrane_count + 1, error));
+    struct membrane *added = &system->acting.membranes[system->acting.membrane_count++];
     return fail_in(
         error,
         membrane_build(&input->face_table, &section->facets, &system->rows, &section->law, added, error),

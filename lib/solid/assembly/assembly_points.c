@@ -38,7 +38,7 @@ static enum status measure_nodes(struct point_condition *p, struct error *error)
     RETURN_IF_ERROR(NEW_ARRAY(&p->volume, cells->node_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&p->shear, cells->node_count, error));
     for (int64_t q = 0; q < body->point_count; q++) {
-        const int32_t *node = cells->node + (int64_t)cell[body->order[q]] * corners;
+        const int32_t *node = cells->node + (int64_t)cell[body->order.points[q]] * corners;
         for (int k = 0; k < corners; k++) {
             p->volume[node[k]] += body->weight[q] / corners;
             p->shear[node[k]] += body->weight[q] / corners * body->materials[body->material[q]].shear_modulus;
@@ -109,7 +109,7 @@ static enum status add_point(const struct point_condition *p, int64_t i, struct 
         RETURN_IF_ERROR(system_append_penalty(p->system, &average, direction, target, p->condition->curve,
                                               p->number, node, p->energy / (deviation * deviation), 0.0,
                                               error));
-        p->system->spring_count++;
+        p->system->penalties.spring_count++;
     }
     return STATUS_OK;
 }

@@ -33,13 +33,14 @@ static enum status order_all(const struct body_input *input, struct body *body, 
     SCRATCH int64_t *root = NULL;
     SCRATCH double *kept = NULL;
     NEW_SCRATCH(int32_t, model, input->point_count, error);
-    RETURN_IF_ERROR(NEW_ARRAY(&body->order, input->point_count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&body->node_order, input->node_count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&body->node_place, input->node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&body->order.points, input->point_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&body->order.nodes, input->node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&body->order.places, input->node_count, error));
     for (int64_t q = 0; q < input->point_count; q++) {
         model[q] = model_of(input, q);
     }
-    RETURN_IF_ERROR(renumber_morton(input->dim, input->point_count, input->x, model, body->order, error));
+    RETURN_IF_ERROR(
+        renumber_morton(input->dim, input->point_count, input->x, model, body->order.points, error));
     if (body->smoothed) {
         RETURN_IF_ERROR(NEW_ARRAY(&root, input->point_count, error));
         RETURN_IF_ERROR(merged_cells_find(input, root, error));
@@ -47,14 +48,14 @@ static enum status order_all(const struct body_input *input, struct body *body, 
         RETURN_IF_ERROR(merged_cells_order(root, kept, body, error));
     }
     for (int64_t n = 0; n < input->node_count; n++) {
-        body->node_order[n] = n;
+        body->order.nodes[n] = n;
     }
     if (input->node_x != NULL) {
         RETURN_IF_ERROR(
-            renumber_morton(input->dim, input->node_count, input->node_x, NULL, body->node_order, error));
+            renumber_morton(input->dim, input->node_count, input->node_x, NULL, body->order.nodes, error));
     }
     for (int64_t n = 0; n < input->node_count; n++) {
-        body->node_place[body->node_order[n]] = (int32_t)n;
+        body->order.places[body->order.nodes[n]] = (int32_t)n;
     }
     return STATUS_OK;
 }
@@ -73,7 +74,7 @@ static enum status copy_points(const struct body_input *input, struct body *body
     RETURN_IF_ERROR(NEW_ARRAY(&body->materials, input->material_count, error));
     memcpy(body->materials, input->materials, (size_t)input->material_count * sizeof *body->materials);
     for (int64_t q = 0; q < points; q++) {
-        int64_t from = body->order[q];
+        int64_t from = body->order.points[q];
         bool alone = !body->smoothed && input->ptr[from + 1] <= input->ptr[from];
         if (alone || !(input->weight[from] > 0.0)) {
             return fail(error, STATUS_INPUT, "points.weight: row %lld: no weight or no neighbours",
@@ -93,12 +94,12 @@ static enum status cut_blocks(const struct body_input *input, struct body *body,
         NEW_ARRAY(&body->blocks, body->point_count / (most - GROUP_MOST_CELLS) + 4 * law_count + 1, error));
     for (int64_t q = 0; q < body->point_count;) {
         struct block *block = &body->blocks[body->block_count++];
-        int model = model_of(input, body->order[q]);
+        int model = model_of(input, body->order.points[q]);
         block->first_point = q;
         block->relaxes = model >= 2 * law_count;
         block->neo_hookean = model == MATERIAL_NEO_HOOKEAN ||
                              (body->smoothed && model == MATERIAL_NEO_HOOKEAN + 2 * law_count);
-        while (q < body->point_count && model_of(input, body->order[q]) == model) {
+        while (q < body->point_count && model_of(input, body->order.points[q]) == model) {
             int64_t next = body->cells.group != NULL ? body->cells.group_end[q] : q + 1;
             if (next - block->first_point > most) {
                 break;
@@ -119,19 +120,19 @@ static enum status copy_rows(const struct body_input *input, const struct body *
     int dim = body->dim;
     int64_t rows = body->point_count * dim, at = 0;
     for (int64_t q = begin; q < end; q++) {
-        int64_t from = body->order[q];
+        int64_t from = body->order.points[q];
         for (int64_t i = input->ptr[from]; i < input->ptr[from + 1]; i++) {
-            int32_t node = body->node_place[input->idx[i]];
+            int32_t node = body->order.places[input->idx[i]];
             at += node >= first && node < last;
         }
     }
     RETURN_IF_ERROR(sparse_new(rows, body->node_count, at * dim, matrix, error));
     at = 0;
     for (int64_t r = 0; r < rows; r++) {
-        int64_t from = body->order[r / dim];
+        int64_t from = body->order.points[r / dim];
         for (int64_t i = input->ptr[from]; i < input->ptr[from + 1] && r >= begin * dim && r < end * dim;
              i++) {
-            int32_t node = body->node_place[input->idx[i]];
+            int32_t node = body->order.places[input->idx[i]];
             if (node >= first && node < last) {
                 matrix->idx[at] = node;
                 matrix->value[at++] = input->dphi[i * dim + r % dim];
@@ -214,8 +215,8 @@ void body_free(struct body *body)
     smoothed_cells_free(&body->cells);
     nodal_volumes_free(&body->volumes);
     prony_free(&body->prony);
-    FREE_ALL(body->order, body->weight, body->materials, body->material, body->blocks, body->node_order,
-             body->node_place, body->u, body->F, body->J, body->force, body->derivative);
+    FREE_ALL(body->order.points, body->weight, body->materials, body->material, body->blocks,
+             body->order.nodes, body->order.places, body->u, body->F, body->J, body->force, body->derivative);
     *body = (struct body){0};
 }
 

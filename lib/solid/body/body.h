@@ -96,12 +96,14 @@ struct nodal_volumes {
 struct body {
     int dim;
     int64_t node_count, point_count;
-    int64_t pair_count;         /* of point and neighbour; of smoothed cells, of face or node and neighbour */
-    int64_t *order;             /* point_count: the caller's index of each point */
-    int64_t *node_order;        /* node_count: the caller's index of each node */
-    int32_t *node_place;        /* node_count: the body's index of each of the caller's nodes */
-    double *weight;             /* point_count */
-    struct material *materials; /* material_count */
+    int64_t pair_count; /* of point and neighbour; of smoothed cells, of face or node and neighbour */
+    struct {
+        int64_t *points; /* point_count: the caller's index of each point; */
+        int64_t *nodes;  /* node_count: that of each node; */
+        int32_t *places; /* node_count: the body's index of each of the caller's nodes */
+    } order;
+    double *weight;                    /* point_count */
+    struct material *materials;        /* material_count */
     const double *const *load_factors; /* present values of the load curves, set by the caller after
                                           body_build: of active stresses; NULL: there are none */
     int64_t material_count;

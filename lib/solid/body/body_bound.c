@@ -105,7 +105,7 @@ static void sum_points(const struct body *body, const struct row_stripe *stripe,
                 g[a] = table->value[i + a * count];
             }
             if (table->idx[i] >= stripe->begin && table->idx[i] < stripe->end) {
-                stiffness[body->node_order[table->idx[i]]] += bound_along(&bound, dim, g);
+                stiffness[body->order.nodes[table->idx[i]]] += bound_along(&bound, dim, g);
             }
         }
     }
@@ -122,7 +122,7 @@ void body_diagonal(struct body *body, bool rest, double *stiffness)
     if (body->smoothed) {
 #pragma omp parallel for schedule(static) num_threads(chunks_of(last - first, NODES_FOR_THREAD).threads)
         for (int64_t n = first; n < last; n++) {
-            stiffness[body->node_order[n]] = bound_of_node(body, n, rest);
+            stiffness[body->order.nodes[n]] = bound_of_node(body, n, rest);
         }
     } else {
 #pragma omp parallel for schedule(static, 1) num_threads(body->rows.stripe_count)

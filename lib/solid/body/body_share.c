@@ -14,7 +14,7 @@ static void measure_blocks(const struct body_input *input, const struct body *bo
     for (int64_t b = 0; b < body->block_count; b++) {
         const struct block *block = &body->blocks[b];
         for (int64_t q = block->first_point; q < block->first_point + block->point_count; q++) {
-            int64_t from = body->order[q];
+            int64_t from = body->order.points[q];
             if (cells == NULL) {
                 work[b] += (double)(input->ptr[from + 1] - input->ptr[from]);
             }
@@ -33,12 +33,12 @@ static void measure_nodes(const struct body_input *input, const struct body *bod
     if (input->smoothed != NULL) {
         const int64_t *ptr = input->smoothed->node_ptr;
         for (int64_t n = 0; n < body->node_count; n++) {
-            work[n] = (double)(ptr[body->node_order[n] + 1] - ptr[body->node_order[n]]);
+            work[n] = (double)(ptr[body->order.nodes[n] + 1] - ptr[body->order.nodes[n]]);
         }
         return;
     }
     for (int64_t i = 0; i < input->ptr[body->point_count]; i++) {
-        work[body->node_place[input->idx[i]]] += 1.0;
+        work[body->order.places[input->idx[i]]] += 1.0;
     }
 }
 

@@ -100,7 +100,7 @@ static void place_nodes(struct body *body, const double *u)
     for (int64_t i = 0; i < placed->count; i++) {
         for (int64_t n = placed->items[i].begin; n < placed->items[i].end; n++) {
             for (int a = 0; a < dim; a++) {
-                body->u[n * stride + a] = u[body->node_order[n] * dim + a];
+                body->u[n * stride + a] = u[body->order.nodes[n] * dim + a];
             }
         }
     }
@@ -112,7 +112,7 @@ static void return_forces(const struct body *body, double *force)
 #pragma omp for schedule(static)
     for (int64_t n = body->share.begin_node; n < body->share.end_node; n++) {
         for (int a = 0; a < dim; a++) {
-            force[body->node_order[n] * dim + a] = body->force[n * stride + a];
+            force[body->order.nodes[n] * dim + a] = body->force[n * stride + a];
         }
     }
 }
@@ -179,7 +179,7 @@ struct deformation body_own_force(struct body *body, const double *u, double *fo
             worst = body->blocks[b].worst_point;
         }
     }
-    deformation.point = body->order[worst];
+    deformation.point = body->order.points[worst];
     return deformation;
 }
 
@@ -193,7 +193,7 @@ struct deformation body_force(struct body *body, const double *u, double *force)
 void body_gather(struct body *body, int width, double *vector)
 {
     const struct body_share *share = &body->share;
-    const int64_t *node = body->node_order;
+    const int64_t *node = body->order.nodes;
     double *by_place = body->force; /* scratch here */
     if (share->ranks == NULL) {
         return;

@@ -142,17 +142,18 @@ enum status merged_cells_order(const int64_t *root, const double *kept, struct b
     }
     int64_t roots = 0;
     for (int64_t q = 0; q < cells; q++) { /* the roots in their order */
-        int64_t c = body->order[q];
+        int64_t c = body->order.points[q];
         if (root[c] == c) {
-            body->order[roots++] = c;
+            body->order.points[roots++] = c;
         }
     }
-    memmove(body->order + cells - roots, body->order, (size_t)roots * sizeof *body->order);
+    memmove(body->order.points + cells - roots, body->order.points,
+            (size_t)roots * sizeof *body->order.points);
     for (int64_t k = cells - roots; k < cells; k++) { /* each followed by the other cells of its group */
-        int64_t c = body->order[k], begin = at;
-        body->order[at++] = c;
+        int64_t c = body->order.points[k], begin = at;
+        body->order.points[at++] = c;
         for (int64_t i = first[c]; i != 0; i = next[i - 1]) {
-            body->order[at++] = i - 1;
+            body->order.points[at++] = i - 1;
         }
         for (int64_t q = begin; q < at; q++) {
             smoothed->group[q] = (int32_t)begin;

@@ -34,8 +34,8 @@ static enum status number_volumes(struct nodal_volumes *volumes, struct placed *
 static bool share_out(const struct body_input *input, const struct body *body, int64_t q, double *share)
 {
     int vertices = body->dim + 1;
-    const int32_t *vertex = input->vertex + body->order[q] * vertices;
-    const double *coordinate = input->barycentric + body->order[q] * vertices;
+    const int32_t *vertex = input->vertex + body->order.points[q] * vertices;
+    const double *coordinate = input->barycentric + body->order.points[q] * vertices;
     double others = 0.0;
     bool at_edge = false;
     for (int k = 0; k < vertices; k++) {
@@ -87,7 +87,7 @@ enum status nodal_volumes_build(const struct body_input *input, struct body *bod
     RETURN_IF_ERROR(NEW_ARRAY(&volumes->change, body->point_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&at_edge, body->point_count, error));
     for (int64_t s = 0; s < slots; s++) {
-        int64_t q = s / vertices, from = body->order[q] * vertices + s % vertices;
+        int64_t q = s / vertices, from = body->order.points[q] * vertices + s % vertices;
         int32_t material = body->material[q];
         int32_t group = input->group != NULL ? input->group[material] : material;
         keys[s] = (struct placed){(double)((int64_t)input->vertex[from] * body->material_count + group), s};

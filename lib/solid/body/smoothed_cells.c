@@ -72,7 +72,8 @@ enum status smoothed_cells_build(const struct smoothed_cells_input *input, struc
 {
     struct smoothed_cells *smoothed = &body->cells;
     int64_t entries = body->point_count * body->dim * body->dim + BODY_POINT_PADDING;
-    RETURN_IF_ERROR(set_linear_gradients(input, body->dim, body->point_count, body->order, smoothed, error));
+    RETURN_IF_ERROR(
+        set_linear_gradients(input, body->dim, body->point_count, body->order.points, smoothed, error));
     RETURN_IF_ERROR(set_variance_weights(body, error));
     RETURN_IF_ERROR(NEW_ARRAY(&smoothed->interpolant, entries, error));
     RETURN_IF_ERROR(smoothed_rows_build(input, body, error));

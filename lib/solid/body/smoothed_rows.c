@@ -49,7 +49,7 @@ static enum status match_edges(const struct smoothed_cells_input *input, const s
         if (edge_of_cell[i] < 0) {
             return fail(error, STATUS_INPUT,
                         "faces.cell: cell %lld lacks a face: run ipoints for smoothed cells",
-                        (long long)body->order[i / CELL_EDGES(dim)]);
+                        (long long)body->order.points[i / CELL_EDGES(dim)]);
         }
     }
     return STATUS_OK;
@@ -183,7 +183,7 @@ enum status smoothed_rows_build(const struct smoothed_cells_input *input, struct
     SCRATCH int32_t *face_row = NULL;
     NEW_SCRATCH(int32_t, place, body->point_count, error);
     for (int64_t q = 0; q < body->point_count; q++) {
-        place[body->order[q]] = (int32_t)q;
+        place[body->order.points[q]] = (int32_t)q;
     }
     NEW_SCRATCH(int32_t, edge_of_cell, body->point_count * CELL_EDGES(dim), error);
     RETURN_IF_ERROR(match_edges(input, body, place, edge_of_cell, error));
@@ -199,7 +199,7 @@ enum status smoothed_rows_build(const struct smoothed_cells_input *input, struct
     RETURN_IF_ERROR(renumber_morton(dim, rows, x, NULL, order, error));
     NEW_SCRATCH(int32_t, vertex_of_cell, body->point_count * corners, error);
     for (int64_t q = 0; q < body->point_count; q++) {
-        memcpy(vertex_of_cell + q * corners, input->cell_node + body->order[q] * corners,
+        memcpy(vertex_of_cell + q * corners, input->cell_node + body->order.points[q] * corners,
                (size_t)corners * sizeof *vertex_of_cell);
     }
     NEW_SCRATCH(int64_t, block_first, body->block_count + 1, error);
@@ -213,10 +213,10 @@ enum status smoothed_rows_build(const struct smoothed_cells_input *input, struct
         .block_first = block_first,
         .node_count = body->node_count,
         .cell_count = body->point_count,
-        .place = body->node_place,
+        .place = body->order.places,
         .lets_go = input->copied != NULL && body->share.ranks == NULL,
         .tables = {{rows, order, input->edge_ptr, input->edge_idx, input->edge_phi, edge_of_cell},
-                   {body->node_count, body->node_order, input->node_ptr, input->node_idx, input->node_phi,
+                   {body->node_count, body->order.nodes, input->node_ptr, input->node_idx, input->node_phi,
                     vertex_of_cell}}};
     enum status listed = list_faces(input, body, place, &tables, &face_row, error);
     tables.face_row = face_row;

@@ -261,7 +261,7 @@ static void cauchy_part(const struct body *body, int64_t q, const double F[9], c
 
 static void put_stress(const struct body *body, int64_t q, const double F[9], double J, void *stress)
 {
-    double *P = (double *)stress + body->order[q] * 9, T[9];
+    double *P = (double *)stress + body->order.points[q] * 9, T[9];
     if (!body->smoothed) {
         point_stress(body, q, F, J, P);
         return;
@@ -280,7 +280,7 @@ void body_stress(struct body *body, double *stress)
 static void put_gradient(const struct body *body, int64_t q, const double F[9], double J, void *gradient)
 {
     (void)J;
-    memcpy((double *)gradient + body->order[q] * 9, F, 9 * sizeof *F);
+    memcpy((double *)gradient + body->order.points[q] * 9, F, 9 * sizeof *F);
 }
 
 void body_gradient(struct body *body, double *gradient)
@@ -292,7 +292,7 @@ void body_gradient(struct body *body, double *gradient)
 static void put_volume_ratio(const struct body *body, int64_t q, const double F[9], double J, void *ratio)
 {
     (void)F;
-    ((double *)ratio)[body->order[q]] = J;
+    ((double *)ratio)[body->order.points[q]] = J;
 }
 
 void body_volume_ratio(struct body *body, double *ratio)
@@ -308,7 +308,7 @@ static void add_inelliptic(const struct body *body, int64_t q, const double F[9]
     const struct material *material = &body->materials[body->material[q]];
     if (!material_is_elliptic(material, active_stress(body, material), body->dim, F)) {
         found->share += body->weight[q];
-        found->point = found->point < 0 ? body->order[q] : found->point;
+        found->point = found->point < 0 ? body->order.points[q] : found->point;
     }
 }
 

@@ -20,7 +20,7 @@ void dynamics_add_work(struct dynamics *d, const double *velocity, double step, 
         double path = rows->target[r] * (factor_to[rows->curve[r]] - factor_from[rows->curve[r]]);
         work += d->constraint.multiplier[r] * path;
     }
-    const struct constraint_rows *penalties = &system->penalties;
+    const struct constraint_rows *penalties = &system->penalties.rows;
     for (int64_t r = 0; r < penalties->count; r++) {
         double path =
             penalties->target[r] * (factor_to[penalties->curve[r]] - factor_from[penalties->curve[r]]);

@@ -16,7 +16,7 @@ enum status dynamics_allocate(struct dynamics *d, struct error *error)
     RETURN_IF_ERROR(NEW_ARRAY(&d->residual, d->size, error));
     RETURN_IF_ERROR(NEW_ARRAY(&d->mode, d->size, error));
     RETURN_IF_ERROR(NEW_ARRAY(&d->scratch, 2 * d->size, error));
-    if (system->load_count + system->pressure_count > 0) {
+    if (system->acting.load_count + system->acting.pressure_count > 0) {
         RETURN_IF_ERROR(NEW_ARRAY(&d->loads, d->size, error));
     }
     RETURN_IF_ERROR(NEW_ARRAY(&d->prestressed, system->curve_count, error));

@@ -20,9 +20,9 @@ static void add_node(const struct body *body, int32_t n, struct block_row *row, 
     block_row_make(body, n, row);
     coarse_rows_clear(rows);
     for (int64_t m = 0; m < row->count; m++) {
-        coarse_rows_add(rows, body->node_order[row->node[m]], dim + 1, row->block + m * (dim + 1) * dim);
+        coarse_rows_add(rows, body->order.nodes[row->node[m]], dim + 1, row->block + m * (dim + 1) * dim);
     }
-    coarse_rows_multiply(rows, body->node_order[n], matrix);
+    coarse_rows_multiply(rows, body->order.nodes[n], matrix);
     coarse_rows_square(rows, dim, 1.0 / row->volume, matrix);
 }
 
@@ -92,7 +92,7 @@ enum status preconditioner_assemble(struct preconditioner *p, struct solid_syste
     for (int64_t n = 0; n < p->node_count; n++) {
         mean += p->stiffness[n] / (double)p->node_count;
     }
-    add_springs(p, &system->penalties, system->penalty_stiffness, 0.0);
+    add_springs(p, &system->penalties.rows, system->penalties.stiffness, 0.0);
     add_springs(p, &system->rows, NULL, mean);
     return STATUS_OK;
 }

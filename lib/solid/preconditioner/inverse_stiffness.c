@@ -89,7 +89,7 @@ static enum status choose(const struct solid_system *system, int64_t p, struct n
                           int64_t *length, struct error *error)
 {
     const struct neighbours *around = system->node_lists;
-    int64_t i = system->body.node_order[p], kept = 0;
+    int64_t i = system->body.order.nodes[p], kept = 0;
     near->count = 0;
     RETURN_IF_ERROR(add_around(system, i, i, near, error));
     bool few = system->dim == 2 && near->count < MOST_ENTRIES - 1;
@@ -98,7 +98,7 @@ static enum status choose(const struct solid_system *system, int64_t p, struct n
     }
     qsort(near->list, (size_t)near->count, sizeof *near->list, compare_placed);
     for (; kept < near->count && kept < MOST_ENTRIES - 1; kept++) {
-        list[kept] = system->body.node_place[near->list[kept].item];
+        list[kept] = system->body.order.places[near->list[kept].item];
     }
     list[kept] = (int32_t)p;
     *length = kept + 1;
@@ -302,7 +302,7 @@ static enum status make_batch(struct stiffness_rows *rows, int64_t first, int64_
         to->ptr[p + 1] = at + batch.pattern.ptr[p - first + 1];
     }
     for (int64_t e = 0; e < batch.pattern.ptr[batch.count]; e++) {
-        to->idx[at + e] = (int32_t)system->body.node_order[batch.pattern.idx[e]];
+        to->idx[at + e] = (int32_t)system->body.order.nodes[batch.pattern.idx[e]];
     }
     return solve_all(&batch, to->block + at * values, error);
 }
@@ -339,7 +339,7 @@ static enum status gather_rows(const struct body *body, struct block_rows *by_pl
     RETURN_IF_ERROR(NEW_ARRAY(&rows->idx, entries, error));
     RETURN_IF_ERROR(NEW_ARRAY(&rows->block, entries * values, error));
     for (int64_t n = 0; n < nodes; n++) {
-        int64_t p = body->node_place[n], at = by_place->ptr[p];
+        int64_t p = body->order.places[n], at = by_place->ptr[p];
         rows->ptr[n + 1] = rows->ptr[n] + length[p];
         memcpy(rows->idx + rows->ptr[n], by_place->idx + at, (size_t)length[p] * sizeof *rows->idx);
         memcpy(rows->block + rows->ptr[n] * values, by_place->block + at * values,

@@ -44,7 +44,7 @@ enum status preconditioner_find_rotations(struct preconditioner *p, const struct
     NEW_SCRATCH(double, volume, p->node_count, error);
     for (int64_t q = 0; q < body->point_count; q++) {
         for (int k = 0; k <= dim; k++) {
-            int64_t n = body->node_order[smoothed_cells_node(body, q, k)];
+            int64_t n = body->order.nodes[smoothed_cells_node(body, q, k)];
             volume[n] += body->weight[q];
             for (int c = 0; c < size; c++) {
                 sum[n * size + c] += body->weight[q] * body->F[c * body->point_count + q];

@@ -198,11 +198,11 @@ static void add_squares(const struct stiffness_rows *rows, const struct constrai
                         const struct numbered *columns, double *block)
 {
     const struct body *body = &rows->system->body;
-    int64_t node = body->node_order[p], dim = body->dim;
+    int64_t node = body->order.nodes[p], dim = body->dim;
     for (int64_t i = lists->ptr[node]; i < lists->ptr[node + 1]; i++) {
         int64_t list = lists->idx[i];
         for (int64_t e = squares->ptr[list]; e < squares->ptr[list + 1]; e++) {
-            int32_t to = number_of(columns, body->node_place[squares->idx[e]]);
+            int32_t to = number_of(columns, body->order.places[squares->idx[e]]);
             for (int64_t r = squares->first[list]; r < squares->first[list + 1] && to >= 0; r++) {
                 const double *along = squares->direction + r * dim;
                 double factor =
@@ -265,8 +265,8 @@ void stiffness_row_make(const struct stiffness_rows *rows, int32_t p, int64_t co
         row->columns.number[column[k]] = (int32_t)k;
         row->columns.item[row->columns.count++] = column[k];
     }
-    add_squares(rows, &system->penalties, &rows->penalised, system->penalty_stiffness, 0.0, p, &row->columns,
-                block);
+    add_squares(rows, &system->penalties.rows, &rows->penalised, system->penalties.stiffness, 0.0, p,
+                &row->columns, block);
     add_squares(rows, &rows->touching, &rows->touched, rows->touching_stiffness, 0.0, p, &row->columns,
                 block);
     add_squares(rows, &system->rows, &rows->held, NULL, rows->hold, p, &row->columns, block);

@@ -90,7 +90,7 @@ enum status stiffness_rows_begin(const struct solid_system *system, struct stiff
     for (int64_t q = 0; q < body->point_count; q++) {
         set_cell(body, q, &rows->cells[q]);
     }
-    RETURN_IF_ERROR(transpose_lists(&system->penalties, system->node_count, &rows->penalised, error));
+    RETURN_IF_ERROR(transpose_lists(&system->penalties.rows, system->node_count, &rows->penalised, error));
     RETURN_IF_ERROR(take_contacts(rows, error));
     return transpose_lists(&system->rows, system->node_count, &rows->held, error);
 }
@@ -119,7 +119,7 @@ static struct average field_at(const struct body *body, int64_t f, const int32_t
     }
     const struct average_table *table = &averages->given[f < edges ? 0 : 1];
     int64_t row = table->order[f < edges ? f : f - edges], at = table->ptr[row];
-    *place = body->node_place;
+    *place = body->order.places;
     return (struct average){table->ptr[row + 1] - at, table->idx + at, table->phi + at};
 }
 

@@ -83,9 +83,9 @@ bool energy_find_prestress(const struct solid_system *system, bool *acts)
             any = acts[body->materials[m].active_curve] = true;
         }
     }
-    for (int64_t i = 0; i < system->membrane_count; i++) {
-        if (system->membranes[i].tension > 0.0) {
-            any = acts[system->membranes[i].curve] = true;
+    for (int64_t i = 0; i < system->acting.membrane_count; i++) {
+        if (system->acting.membranes[i].tension > 0.0) {
+            any = acts[system->acting.membranes[i].curve] = true;
         }
     }
     return any;
@@ -94,8 +94,8 @@ bool energy_find_prestress(const struct solid_system *system, bool *acts)
 double energy_of_prestress(struct solid_system *system, const double *u, int32_t curve)
 {
     double energy = body_active_energy(&system->body, curve);
-    for (int64_t i = 0; i < system->membrane_count; i++) {
-        const struct membrane *membrane = &system->membranes[i];
+    for (int64_t i = 0; i < system->acting.membrane_count; i++) {
+        const struct membrane *membrane = &system->acting.membranes[i];
         if (membrane->tension > 0.0 && membrane->curve == curve) {
             energy += membrane_pull(membrane, system->X, 1.0, u, NULL) -
                       membrane_pull(membrane, system->X, 0.0, u, NULL);

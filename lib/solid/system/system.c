@@ -15,28 +15,29 @@
 
 void system_free(struct solid_system *system)
 {
-    for (int64_t i = 0; i < system->load_count; i++) {
-        free(system->loads[i].force);
+    for (int64_t i = 0; i < system->acting.load_count; i++) {
+        free(system->acting.loads[i].force);
     }
-    for (int64_t i = 0; i < system->pressure_count; i++) {
-        free(system->pressures[i].corner);
-        boundary_averages_free(&system->pressures[i].corners);
-        boundary_averages_free(&system->pressures[i].points);
+    for (int64_t i = 0; i < system->acting.pressure_count; i++) {
+        free(system->acting.pressures[i].corner);
+        boundary_averages_free(&system->acting.pressures[i].corners);
+        boundary_averages_free(&system->acting.pressures[i].points);
     }
-    for (int64_t i = 0; i < system->membrane_count; i++) {
-        membrane_free(&system->membranes[i]);
+    for (int64_t i = 0; i < system->acting.membrane_count; i++) {
+        membrane_free(&system->acting.membranes[i]);
     }
     system_free_contacts(system);
     for (int64_t i = 0; i < system->curve_count; i++) {
         curve_free(&system->curves[i]);
     }
-    FREE_ALL(system->loads, system->pressures, system->membranes, system->curves, system->lumped_mass,
-             system->dashpot, system->factor);
+    FREE_ALL(system->acting.loads, system->acting.pressures, system->acting.membranes, system->curves,
+             system->lumped_mass, system->dashpot, system->factor);
     constraint_rows_free(&system->rows);
     sliding_free(&system->sliding);
-    constraint_rows_free(&system->penalties);
-    constraint_nodes_free(&system->penalty_nodes);
-    FREE_ALL(system->penalty_stiffness, system->penalty_unit, system->penalty_volume, system->penalty_force);
+    constraint_rows_free(&system->penalties.rows);
+    constraint_nodes_free(&system->penalties.nodes);
+    FREE_ALL(system->penalties.stiffness, system->penalties.unit, system->penalties.volume,
+             system->penalties.force);
     body_free(&system->body);
     *system = (struct solid_system){0};
 }
@@ -44,8 +45,8 @@ void system_free(struct solid_system *system)
 enum status system_state(struct solid_system *system, const struct state *state, struct error *error)
 {
     const struct state_value factor = {"factor", STATE_NUMBERS, system->factor, system->curve_count};
-    const struct state_value stiffness = {"stiffness", STATE_NUMBERS, system->penalty_stiffness,
-                                          system->penalties.count};
+    const struct state_value stiffness = {"stiffness", STATE_NUMBERS, system->penalties.stiffness,
+                                          system->penalties.rows.count};
     const struct state_value stability[] = {{"least", STATE_NUMBERS, &system->stability.least, 1},
                                             {"node", STATE_COUNTS, &system->stability.node, 1},
                                             {"left", STATE_FLAGS, &system->stability.left, 1},
@@ -248,21 +249,21 @@ static void add_pressure(const struct solid_system *system, const struct pressur
 
 bool system_has_potential(const struct solid_system *system)
 {
-    return system->pressure_count == 0;
+    return system->acting.pressure_count == 0;
 }
 
 void system_add_loads(const struct solid_system *system, const double *u, double *force)
 {
     int64_t size = system->node_count * system->dim;
-    for (int64_t l = 0; l < system->load_count; l++) {
-        double factor = system->factor[system->loads[l].curve];
-        const double *load = system->loads[l].force;
+    for (int64_t l = 0; l < system->acting.load_count; l++) {
+        double factor = system->factor[system->acting.loads[l].curve];
+        const double *load = system->acting.loads[l].force;
         for (int64_t i = 0; i < size; i++) {
             force[i] += factor * load[i];
         }
     }
-    for (int64_t l = 0; l < system->pressure_count; l++) {
-        const struct pressure_load *load = &system->pressures[l];
+    for (int64_t l = 0; l < system->acting.pressure_count; l++) {
+        const struct pressure_load *load = &system->acting.pressures[l];
         add_pressure(system, load, system->factor[load->curve], u, force);
     }
 }
@@ -327,8 +328,9 @@ double system_longest_way(const struct solid_system *system)
     for (int64_t r = 0; r < system->rows.count; r++) {
         longest = fmax(longest, fabs(system->rows.target[r]));
     }
-    for (int64_t r = system->penalties.count - system->spring_count; r < system->penalties.count; r++) {
-        longest = fmax(longest, fabs(system->penalties.target[r]));
+    for (int64_t r = system->penalties.rows.count - system->penalties.spring_count;
+         r < system->penalties.rows.count; r++) {
+        longest = fmax(longest, fabs(system->penalties.rows.target[r]));
     }
     for (int64_t c = 0; c < system->contact_count; c++) {
         const struct contact *contact = &system->contacts[c];
@@ -358,9 +360,9 @@ static void add_penalties_to_bound(const struct solid_system *system, double *ma
     for (int64_t c = 0; c < system->contact_count; c++) {
         contact_add_to_bound(&system->contacts[c], mass);
     }
-    for (int64_t r = 0; r < system->penalties.count; r++) {
-        struct average average = constraint_rows_average(&system->penalties, r);
-        add_to_bound(&average, system->penalty_stiffness[r], mass);
+    for (int64_t r = 0; r < system->penalties.rows.count; r++) {
+        struct average average = constraint_rows_average(&system->penalties.rows, r);
+        add_to_bound(&average, system->penalties.stiffness[r], mass);
     }
 }
 
@@ -369,8 +371,8 @@ void system_relaxation_mass(struct solid_system *system, bool rest, double *mass
     double sum = 0.0;
     body_diagonal(&system->body, rest, mass);
     if (!system_has_inverse(system)) {
-        for (int64_t i = 0; i < system->membrane_count; i++) {
-            membrane_add_to_bound(&system->membranes[i], mass);
+        for (int64_t i = 0; i < system->acting.membrane_count; i++) {
+            membrane_add_to_bound(&system->acting.membranes[i], mass);
         }
         add_penalties_to_bound(system, mass);
     }

@@ -47,6 +47,31 @@ struct stability {
     int64_t left_node; /* where it moves most */
 };
 
+/* Loads, and the membranes that resist them. */
+struct acting {
+    struct dead_load *loads;
+    int64_t load_count;
+    struct pressure_load *pressures;
+    int64_t pressure_count;
+    struct membrane *membranes;
+    int64_t membrane_count;
+};
+
+/* Penalty stabilisation of the constraints. Boundary averages do not constrain variations of the field
+ * within them, which grow under a pressure of about ten shear moduli. Penalties at the quadrature points
+ * of the constrained facets hold the field to the same targets. Their forces vanish where the field meets
+ * the targets, so that a linear field stays exact. The last ones are springs of supports, then those of
+ * measured points: they are not of a condition that is met exactly as well. */
+struct penalties {
+    struct constraint_rows rows;
+    struct constraint_nodes nodes; /* their transpose; with several processes for own nodes */
+    int64_t spring_count;
+    double *stiffness; /* rows.count, N/m (2D: N/m2) */
+    double *unit;      /* rows.count: stiffness by modulus, m (2D: 1); 0: it stays as it is */
+    int32_t *volume;   /* rows.count: the nodal volume at a penalty's node; -1: none */
+    double *force;     /* rows.count: scratch */
+};
+
 struct condition;
 
 struct solid_system {
@@ -56,12 +81,7 @@ struct solid_system {
     struct body body;
     const struct neighbours *node_lists; /* shape functions at the nodes, the caller's; NULL: not known */
     const double *node_phi;
-    struct dead_load *loads;
-    int64_t load_count;
-    struct pressure_load *pressures;
-    int64_t pressure_count;
-    struct membrane *membranes;
-    int64_t membrane_count;
+    struct acting acting;
     struct contact *contacts;
     struct boundary_averages *contact_points, *contact_averages; /* contact_count: points of the contacts, and
                                                                 their nodal averages (may be empty) */
@@ -70,18 +90,7 @@ struct solid_system {
     struct constraint_rows rows;
     struct sliding sliding;             /* those of the rows along the normals of curved sides */
     const struct condition *conditions; /* of the rows, for messages; the caller's; NULL: not known */
-    /* Penalty stabilisation of the constraints. Boundary averages do not constrain variations of the field
-     * within them, which grow under a pressure of about ten shear moduli. Penalties at the quadrature points
-     * of the constrained facets hold the field to the same targets. Their forces vanish where the field meets
-     * the targets, so that a linear field stays exact. */
-    struct constraint_rows penalties;
-    struct constraint_nodes penalty_nodes; /* their transpose; with several processes for own nodes */
-    int64_t spring_count;      /* the last penalties are springs of supports, then those of measured points:
-                                  they are not of a condition that is met exactly as well */
-    double *penalty_stiffness; /* penalties.count, N/m (2D: N/m2) */
-    double *penalty_unit;      /* penalties.count: stiffness by modulus, m (2D: 1); 0: it stays as it is */
-    int32_t *penalty_volume;   /* penalties.count: the nodal volume at a penalty's node; -1: none */
-    double *penalty_force;     /* penalties.count: scratch */
+    struct penalties penalties;
     struct load_curve *curves;
     int64_t curve_count;
     double *lumped_mass; /* node_count, kg (2D: kg/m), positive: each cell shares its mass among its nodes */
@@ -132,8 +141,8 @@ void system_add_contacts(struct solid_system *system, const double *u, double *f
  * change the state. */
 void system_accept(struct solid_system *system);
 
-/* Whether the loads have a potential, so that the stiffness is symmetric: at the rim of a part of the boundary
- * a following pressure has none. */
+/* Whether the loads have a potential, so that the stiffness is symmetric: at the rim of a part of the
+ * boundary a following pressure has none. */
 bool system_has_potential(const struct solid_system *system);
 
 /* Whether a contact has friction; functions of friction.h for all contacts; and what friction has dissipated,
