@@ -133,9 +133,13 @@ crushed() {
     for frames in 1 5 10; do
         { block quasi-static | sed 's/0.45/0.49/'
             printf '[displacement planes]\nfacets = xmin, ymin\nnormal = 0\n[displacement top]\nfacets = ymax\nnormal = -0.05\n[output]\nframes = %s\n' $frames; } > slide.scene
-        # The homogeneous state is exact, and unstable from a stretch of .64 to .62 on.
-        run -0 --separate-stderr mtled -o u.dat slide.scene block.mts
-        [[ $stderr =~ 'at 0.7'([0-9]*)' of the load the body leaves a state near equilibrium' && 0.7${BASH_REMATCH[1]} < 0.77 ]]
+        # The homogeneous state is exact, and unstable from a stretch of .64 to .62 on. What the wrinkles become, the way decides.
+        run --separate-stderr mtled -o u.dat slide.scene block.mts
+        if [ "$status" -eq 1 ]; then
+            [[ $stderr == *'the body folds from 0.'[78]* ]]
+        else
+            [[ $stderr =~ 'at 0.7'([0-9]*)' of the load the body leaves a state near equilibrium' && 0.7${BASH_REMATCH[1]} < 0.77 ]]
+        fi
     done
     # Up to the stretch at which a plane side creases, .65, that is homogeneous: in closed form 215.611 N/m at .7, to 1e-6 in a run to that.
     sed 's/-0.05/-0.03/; s/frames = 10/reactions = yes\n[solver]\ntolerance = 1e-6/' slide.scene > slide30.scene

@@ -51,6 +51,8 @@ static void go_back(struct newton *n)
     system_accept(n->system);
     n->load.next = shorter * n->load.last;
     n->load.waits = true;
+    n->progress.error = INFINITY;
+    n->progress.step = n->report->steps;
     n->watch.steps = 0;
     n->watch.above = 0.0;
     n->step.length = INFINITY;

@@ -137,6 +137,13 @@ struct deformation system_residual(struct solid_system *system, const double *u,
 struct deformation system_smooth_residual(struct solid_system *system, const double *u, double *residual);
 void system_add_contacts(struct solid_system *system, const double *u, double *force);
 
+/* Let the residual[node_count * dim] of system_smooth_residual at u follow the load from `from` to `to`, at
+ * which system->factor is then, without evaluating the body: where the load acts on it from outside alone,
+ * that is, no material is active or viscoelastic. scratch: node_count * dim. */
+bool system_acts_outside(const struct solid_system *system);
+void system_change_load(struct solid_system *system, const double *u, double from, double to, double *scratch,
+                        double *residual);
+
 /* Accept the state that was evaluated last as the next step: see contact_accept. Evaluations alone do not
  * change the state. */
 void system_accept(struct solid_system *system);
