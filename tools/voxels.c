@@ -70,6 +70,7 @@ static const char usage[] =
 #include <ctype.h>
 #include <math.h>
 #include <string.h>
+#include <unistd.h>
 
 /* Errors of volume above this share are reported, and a share of the body outside of the cells with sizes. */
 static const double reported_share = 0.01;
@@ -266,6 +267,12 @@ static const double *label_sizes_read(const struct tool *tool, const struct labe
     return section->data;
 }
 
+/* Progress on a terminal: the step that begins; NULL: none. */
+static void show_step(const char *step)
+{
+    fprintf(stderr, "\r%78s\r%s%s", "", step != NULL ? "voxels: " : "", step != NULL ? step : "");
+}
+
 static void check_options(const struct tool *tool)
 {
     if (!tool_given(tool, "spacing")) {
@@ -298,8 +305,10 @@ int main(int argc, char *argv[])
             image.table.kept[l] = l == surface.inner;
         }
     }
-    struct label_cells_options label_cells_options = {
-        .spacing = spacing, .keep = image.table.kept, .largest = tool_given(&tool, "largest")};
+    struct label_cells_options label_cells_options = {.spacing = spacing,
+                                                      .keep = image.table.kept,
+                                                      .largest = tool_given(&tool, "largest"),
+                                                      .begin = isatty(STDERR_FILENO) ? show_step : NULL};
     SCRATCH bool *fine = NULL;
     if (tool_given(&tool, "fine")) {
         fine =

@@ -24,6 +24,8 @@ struct label_cells_options {
                            are halved where it is smaller than theirs; NULL: nowhere */
     const bool *keep;   /* labels->count: cells of this label are wanted; not label 0 */
     bool largest; /* keep only the largest of several connected bodies: voxels of others become outside */
+    /* Called at the beginning of each step, and at the end with NULL; NULL: not. */
+    void (*begin)(const char *step);
 };
 
 /* Bounds of the angles of cells, degrees, which label_cells_make meets if it can. */
