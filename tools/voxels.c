@@ -60,7 +60,7 @@ static const char usage[] =
     "  voxels -l names -h 4mm -v < labels.nii.gz > body.mts\n"
     "  voxels -h 4mm brain.nii.gz 2=tumour_mask.nii.gz > body.mts\n"
     "  voxels -h 4mm -l names --surface 'parenchyma|outside' --gap 1mm labels.nii.gz > skull.tsv\n"
-    "  voxels -h 4mm a.nii.gz 9=mask.nii.gz | tag -r label_1=all --replace -m 'label_9|outside=part'\n";
+    "  voxels -h 4mm a.nii.gz 9=mask.nii.gz | tag -r label_1=all --replace -f 'part=label_9|outside'\n";
 
 #include "cell_report.h"
 #include "voxels/label_image.h"
