@@ -248,3 +248,18 @@ END
     cmp out/u.dat out/u-2.dat
     run -1 cmp out/u.dat out/u-3.dat
 }
+
+@test "sizefield: the same sizes as a stream" {
+    cloud -d 3 -k regular -n 4 --box 0,0.1,0,0.1,0,0.1 --field quadratic -o cube.mts
+    sizefield -t cube.mts > sizes.dat
+    mts list sizes.dat | cut -f 1 | tr '\n' ' ' | has -x 'nodes.x cells size '
+    mts print cells sizes.dat | wc -l > count
+    [ "$(cat count)" -eq $(($(mts print cells cube.mts | wc -l) + 3 * 6 * 3 * 3 * 2)) ]
+    # Corners and sizes of the simplices of the view, but for the order.
+    sizefield cube.mts | sed -n 's/^SS([^)]*){\([^}]*\)};/\1/p' | tr , '\n' | sort -g > of_view
+    awk 'NR == FNR { size[FNR - 1] = $1; next } { for (k = 1; k <= 4; k++) printf "%.6g\n", size[$k] }' \
+        <(mts print size sizes.dat) <(mts print cells sizes.dat) | sort -g | cmp - of_view
+    sizefield -b cube.mts | mts text | grep -v '^# @' | cmp - <(grep -v '^# @' sizes.dat)
+    refused 2 "one of -b and -t" sizefield -b -t cube.mts
+    refused 2 "-u goes without -b and -t" sizefield -b -u mm cube.mts
+}

@@ -59,7 +59,7 @@ press() {
     press body.mts
 }
 
-@test "folded layers thinner than the spacing: in seconds, and with the layers' volumes" {
+@test "folded layers thinner than the spacing: in seconds, with each step on a terminal, and with the layers' volumes" {
     /usr/bin/python3 - << 'END'
 import nibabel as nib, numpy as np
 x, y, z = 2 * np.pi / 18 * (np.mgrid[:60, :60, :60] - 30)
@@ -69,7 +69,9 @@ image = nib.Nifti1Image(label.astype(np.uint8), np.eye(4))
 image.header.set_xyzt_units("mm")
 nib.save(image, "folded.nii")
 END
-    (ulimit -t 8 && voxels -v -h 5mm -o folded.mts folded.nii 2> said) # 16 s where each step searches anew
+    (ulimit -t 8 && script -qefc 'voxels -v -h 5mm -o folded.mts folded.nii' terminal > ignored) # 16 s where each step searches anew
+    grep -q "voxels: moving nodes onto interfaces" terminal
+    tr '\r' '\n' < terminal > said
     read -r before after < <(said label_2)
     near "$after" "$before" 0.01 # .025 where nodes that cannot move count as if they did
     [ -z "$(mts check folded.mts | grep -v 'connected bodies$')" ]
@@ -149,6 +151,38 @@ END
     grep -q "^voxels: 2 connected bodies, .*: --largest keeps that one; a smaller -h, or --fine, keeps thin connections$" said
     voxels -h 5mm --fine 1.25mm bar.nii.gz 2> said > body.mts
     run -1 grep "connect" said
+}
+
+# sizes LEAST GRADATION X Y Z: a stream of sizes over 100 mm about the origin, LEAST at a place, growing with the distance (mm)
+sizes() {
+    cloud -d 3 -k regular -n 21 --box -0.05,0.05,-0.05,0.05,-0.05,0.05 -t -o cloud.dat
+    with_section cloud.dat size f8 <(mts print nodes.x cloud.dat | awk -v s="$1" -v g="$2" -v x="$3" -v y="$4" -v z="$5" \
+        '{ print s / 1e3 + g * sqrt(($1 - x / 1e3) ^ 2 + ($2 - y / 1e3) ^ 2 + ($3 - z / 1e3) ^ 2) }') unit=m
+}
+
+@test "--sizes: bad ones are refused in a line" {
+    phantom sphere > image.nii.gz
+    phantom sphere@slice > slice.nii.gz
+    sizes 2 0.3 0 0 0 > sizes.dat
+    refused 2 "for bodies in space" voxels -h 4mm --sizes <(cloud -d 2 -k regular -n 3 --box 0,1,0,1 | with_section - size f8 <(yes 1 | head -n 9)) slice.nii.gz
+    refused 2 "cells in 3D, the image is of a body in 2D" voxels -h 4mm --sizes sizes.dat slice.nii.gz
+    refused 2 "run sizefield -b" voxels -h 4mm --sizes <(mts drop size sizes.dat) image.nii.gz
+    refused 2 "cells" voxels -h 4mm --sizes <(mts drop cells sizes.dat) image.nii.gz
+    refused 2 "9260 rows for 9261 nodes" voxels -h 4mm --sizes <(shortened size sizes.dat) image.nii.gz
+    for bad in 0 -1e-3 nan inf; do
+        awk -v bad=$bad '/^# / { on = $2 == "size"; n = 0 } on && NF == 1 && ++n == 8 { $1 = bad } { print }' sizes.dat > bad.dat
+        refused 2 "size: row 7: " voxels -h 4mm --sizes bad.dat image.nii.gz
+        [[ "$stderr" == *"is not finite and positive"* ]]
+    done
+    refused 2 "the sizes lie elsewhere" voxels -h 4mm --sizes <(cloud -d 3 -k regular -n 3 --box 1,2,1,2,1,2 | with_section - size f8 <(yes 0.002 | head -n 27)) image.nii.gz
+    sizes 0.05 0.3 0 0 0 > many.dat
+    refused 2 "more than 67108864 lattice points" voxels -h 4mm --sizes many.dat image.nii.gz
+    sizes 0.001 0.3 0 0 0 > tiny.dat
+    refused 2 "a size of 1e-06 m: at least 1/128 of the spacing" voxels -h 4mm --sizes tiny.dat image.nii.gz
+    # What sizes leave out is reported.
+    sizes 2 0.3 0 0 0 | awk '/^# / { on = $2 == "nodes.x" } on && NF == 3 { $1 += 0.05 } { print }' > aside.dat
+    voxels -h 8mm --sizes aside.dat image.nii.gz 2> said > body.mts
+    grep -qE "voxels: [45][0-9.]* % of the body lie beyond the sizes" said
 }
 
 @test "a slice, its own or chosen from a body" {

@@ -1,7 +1,7 @@
 static const char usage[] =
     "voxels - label image to node cloud, background cells, facets and node sets\n"
     "\n"
-    "usage: voxels -h LENGTH [--fine LENGTH[:NAME,...]] [-l TABLE]\n"
+    "usage: voxels -h LENGTH [--fine LENGTH[:NAME,...]] [--sizes FILE] [-l TABLE]\n"
     "              [-s AXIS=PLACE] [--largest] [-u UNIT] [-v] [-t] [-o FILE] [[LABEL=]IMAGE ...]\n"
     "       voxels -h LENGTH --surface NAME[|NAME] [--gap LENGTH] [--fine LENGTH[:NAME,...]] [-l TABLE]\n"
     "              [-s AXIS=PLACE] [--largest] [-u UNIT] [-v] [-o FILE] [[LABEL=]IMAGE ...]\n"
@@ -41,6 +41,7 @@ static const char usage[] =
     "  -h, --spacing LENGTH    of the lattice, with a unit: 6mm (required; a last -h is --help)\n"
     "      --fine LENGTH[:NAME,...]  spacing at all interfaces, with names at those of these labels only:\n"
     "                          that of -h is halved until it is no larger\n"
+    "      --sizes FILE        lengths of edges, by sizefield -b: the spacing is halved where they ask so\n"
     "      --surface NAME[|NAME]  write the surface of the first label; with a second name (or outside)\n"
     "                          only where that lies beyond it\n"
     "      --gap LENGTH        move it outward by LENGTH, less where it would cross itself\n"
@@ -59,7 +60,7 @@ static const char usage[] =
     "  voxels -l names -h 4mm -v < labels.nii.gz > body.mts\n"
     "  voxels -h 4mm brain.nii.gz 2=tumour_mask.nii.gz > body.mts\n"
     "  voxels -h 4mm -l names --surface 'parenchyma|outside' --gap 1mm labels.nii.gz > skull.tsv\n"
-    "  voxels -h 4mm a.nii.gz 9=mask.nii.gz | tag -r label_1=all --replace -m 'label_9|outside=part'\n";
+    "  voxels -h 4mm a.nii.gz 9=mask.nii.gz | tag -r label_1=all --replace -f 'part=label_9|outside'\n";
 
 #include "cell_report.h"
 #include "voxels/label_image.h"
@@ -69,8 +70,9 @@ static const char usage[] =
 #include <ctype.h>
 #include <math.h>
 #include <string.h>
+#include <unistd.h>
 
-/* Errors of volume above this share are reported. */
+/* Errors of volume above this share are reported, and a share of the body outside of the cells with sizes. */
 static const double reported_share = 0.01;
 
 static double shown(int dim, double volume)
@@ -180,6 +182,10 @@ static void report(const struct tool *tool, const struct label_image *image, con
                    double spacing, bool surface, bool verbose)
 {
     struct cells cells = label_cells_view(result);
+    if (result->unsized > reported_share) {
+        tool_note(tool, "%.3g %% of the body lie beyond the sizes: cells there are of the spacing of -h",
+                  100 * result->unsized);
+    }
     if (result->specks > 0) {
         tool_note(tool, "%jd bodies no larger than the spacing, %.3g %s in all, are left out", result->specks,
                   shown(cells.dim, result->speck_volume), cells.dim == 3 ? "ml" : "cm2");
@@ -240,6 +246,33 @@ static bool *label_fine_parse(const struct tool *tool, const struct label_image 
     return fine;
 }
 
+/* Read the sections nodes.x, cells and size of a stream, in the dimension of the image. Returns the sizes, a
+ * view of it. Exits on failure. */
+static const double *label_sizes_read(const struct tool *tool, const struct label_image *image,
+                                      struct stream *stream, struct cells *cells)
+{
+    const struct section *section;
+    tool_read(tool, tool_value(tool, "sizes"), stream);
+    TOOL_TRY(tool, stream_cells(stream, true, cells, &error));
+    TOOL_TRY(tool, stream_need(stream, "size", TYPE_F8, 1, "sizefield -b", &section, &error));
+    if (cells->dim != image->labels.dim) {
+        tool_fail(tool, STATUS_INPUT, "--sizes: cells in %dD, the image is of a body in %dD", cells->dim,
+                  image->labels.dim);
+    }
+    if (section->rows != cells->node_count) {
+        tool_fail(tool, STATUS_INPUT, "--sizes: size: %jd rows for %jd nodes", section->rows,
+                  cells->node_count);
+    }
+    TOOL_TRY(tool, fail_in(&error, section_check_numbers(section, POSITIVE, &error), "--sizes"));
+    return section->data;
+}
+
+/* Progress on a terminal: the step that begins; NULL: none. */
+static void show_step(const char *step)
+{
+    fprintf(stderr, "\r%78s\r%s%s", "", step != NULL ? "voxels: " : "", step != NULL ? step : "");
+}
+
 static void check_options(const struct tool *tool)
 {
     if (!tool_given(tool, "spacing")) {
@@ -272,13 +305,21 @@ int main(int argc, char *argv[])
             image.table.kept[l] = l == surface.inner;
         }
     }
-    struct label_cells_options label_cells_options = {
-        .spacing = spacing, .keep = image.table.kept, .largest = tool_given(&tool, "largest")};
+    struct label_cells_options label_cells_options = {.spacing = spacing,
+                                                      .keep = image.table.kept,
+                                                      .largest = tool_given(&tool, "largest"),
+                                                      .begin = isatty(STDERR_FILENO) ? show_step : NULL};
     SCRATCH bool *fine = NULL;
     if (tool_given(&tool, "fine")) {
         fine =
             label_fine_parse(&tool, &image, tool_value(&tool, "fine"), spacing, &label_cells_options.finest);
         label_cells_options.fine = fine;
+    }
+    FREED_BY(stream_free) struct stream sizes = {0};
+    struct cells sized;
+    if (tool_given(&tool, "sizes")) {
+        label_cells_options.size = label_sizes_read(&tool, &image, &sizes, &sized);
+        label_cells_options.sized = &sized;
     }
     struct error error;
     enum status status = label_cells_make(&image.labels, &label_cells_options, &result, &error);

@@ -2,8 +2,8 @@
 # A scene on meshes that are refined where it must be: refine.sh SCENE GEO TOL OUT
 #
 # Each round meshes the geometry by gmsh, or a label image (GEO ends in .nii, .nii.gz, .nrrd or .mha) by voxels, at sizes s and 2 s, solves the scene on both, and estimates the error of the finer solution
-# (fielderr, of order 1: that of singular solutions, so that where a solution is smooth the estimate is too large). While its mean is above TOL (0.2mm; m without a unit), the next round's sizes come from sizefield; of an image all are made
-# smaller alike. In the folder OUT stay those of the round of least estimate: body.msh, sizes.pos (of an image body.mts), u.dat, coarse.dat, errors.tsv; and rounds.tsv, a row for each round:
+# (fielderr, of order 1: that of singular solutions, so that where a solution is smooth the estimate is too large). While its mean is above TOL (0.2mm; m without a unit), the next round's sizes come from sizefield. In the folder OUT stay
+# those of the round of least estimate: body.msh, sizes.pos (of an image body.mts, sizes.mts), u.dat, coarse.dat, errors.tsv; and rounds.tsv, a row for each round:
 #   round, nodes, mean_mm over the body and max_mm of the nodes (estimated), seconds (processor time: nodes to mtled on the finer mesh), all_seconds (all of the
 #   round, gmsh and the coarser mesh as well)
 #
@@ -54,13 +54,13 @@ fi
 [ -f "$geometry" ] || fail 2 "GEO: no file $geometry"
 case $geometry in
     *.nii | *.nii.gz | *.nrrd | *.mha)
-        image=yes unit=m body=body.mts GRADED=no
+        image=yes unit=m body=body.mts sizes=sizes.mts
         if ! spacing=$(metres "${SPACING-}") || ! holds "$spacing > 0"; then
             fail 2 "SPACING: '${SPACING-}' is not a positive length, such as 6mm"
         fi
         ;;
     *)
-        image='' body=body.msh
+        image='' body=body.msh sizes=sizes.pos
         [ -n "$unit" ] || fail 2 "UNIT: say in which unit $geometry is, as UNIT=mm"
         ;;
 esac
@@ -88,12 +88,17 @@ mesh() {
     local from=$geometry
     if [ "$image" ]; then
         # shellcheck disable=SC2086 # several arguments
-        voxels -h "$(calc "$1 * $spacing")" ${VOXELS-} "$geometry" -o "$2" 2> "$work/log"
+        voxels -h "$(calc "$1 * $spacing")" ${graded:+--sizes <(scaled "$1")} ${VOXELS-} "$geometry" -o "$2" 2> "$work/log"
         return
     fi
     [ -z "$graded" ] || from=$work/graded.geo
     # shellcheck disable=SC2086 # several arguments
     gmsh -v 1 "-$dim" ${GMSH-} -setnumber Mesh.RandomSeed 1 -clscale "$1" "$from" -o "$2" > "$work/log" 2>&1
+}
+
+# scaled FACTOR: the sizes of an image's cells times FACTOR.
+scaled() {
+    awk -v factor="$1" '/^# / { on = $2 == "size" } on && NF == 1 { $1 = sprintf("%.17g", factor * $1) } { print }' "$work/$sizes"
 }
 
 # named: the stage tag, where it is asked for.
@@ -130,11 +135,11 @@ keep() {
     [ -n "${AFRESH-}" ] || grep -qE '^(friction|duration|frames) *=' "$scene" || last=$work/last.dat
     holds "$estimate < ${least_estimate:-1e300}" || return 0
     least_estimate=$estimate kept="round $round, $nodes nodes, $(calc "1000 * $estimate") mm"
-    for file in "$body" u.dat coarse.dat errors.tsv sizes.pos; do
+    for file in "$body" u.dat coarse.dat errors.tsv "$sizes"; do
         [ ! -e "$work/$file" ] || cp "$work/$file" "$out/.$file.new"
     done
-    rm -f "$out/sizes.pos"
-    for file in "$body" u.dat coarse.dat errors.tsv sizes.pos; do
+    rm -f "$out/$sizes"
+    for file in "$body" u.dat coarse.dat errors.tsv "$sizes"; do
         [ ! -e "$out/.$file.new" ] || mv "$out/.$file.new" "$out/$file"
     done
 }
@@ -154,13 +159,19 @@ turning() {
         END { for (k = 1; k <= NF; k++) if (high[k] - low[k] > side) side = high[k] - low[k]; print (u < side ? u / side : 1) }'
 }
 
-# grade: the sizes, and graded.geo, for the share of the error of the last good round.
+# grade: the sizes, and graded.geo or the spacing, for the share of the error of the last good round.
 grade() {
-    sizefield -v -s "$share" ${least:+--least "$least"} -n "$(calc "int($budget * $asked_by_made)")" --sag "$(calc "$share * $estimate / $(turning)")" -u "$unit" \
-        -o "$work/sizes.pos" "$work/last.dat" 2> "$work/log" || lost sizefield
+    local form=(-n "$(calc "int($budget * $asked_by_made)")" --sag "$(calc "$share * $estimate / $(turning)")" -u "$unit")
+    [ -z "$image" ] || form=("${form[@]:0:2}" -t) # the volumes that voxels keeps make up for chords
+    sizefield -v -s "$share" ${least:+--least "$least"} "${form[@]}" -o "$work/$sizes" "$work/last.dat" 2> "$work/log" || lost sizefield
     smallest=$(awk -F '\t' '$1 == "least size" { print $2 }' "$work/log")
     asked=$(awk -F '\t' '$1 == "nodes" { print $2 }' "$work/log")
     graded=yes
+    if [ "$image" ]; then
+        # The mean edge of a lattice's cells is .911 of its spacing.
+        spacing=$(awk -F '\t' '$1 == "largest size" { printf "%.9g", $2 / 0.911 }' "$work/log")
+        return
+    fi
     # Whatever else the geometry says of sizes does not count.
     {
         printf 'Include "%s";\nMerge "%s";\nBackground Mesh View[0];\n' "$(realpath "$geometry")" "$(realpath "$work/sizes.pos")"
@@ -197,14 +208,14 @@ attempt() {
 
 printf 'round\tnodes\tmean_mm\tmax_mm\tseconds\tall_seconds\n' | tee "$out/rounds.tsv"
 factor=$start least=${LEAST-} again=0 stuck=0
-# How many nodes sizes asked for, by how many were made of them: learnt in each round.
-asked='' asked_by_made=1
+# How many nodes sizes asked for, by how many were made of them: learnt in each round. The octree of voxels makes up to twice as many.
+asked='' asked_by_made=$([ "$image" ] && echo 0.5 || echo 1)
 for ((round = 1; round <= rounds; round++)); do
     if ! attempt; then
-        if [ -z "$graded" ] || [[ $what != "the scene"* ]] || ((again++ == 3)); then
+        if [ -z "$graded" ] || [[ $what != "the scene"* && $what != voxels ]] || ((again++ == 3)); then
             lost "$what"
         fi
-        # Small cells at a corner may fold where larger ones do not.
+        # Small cells at a corner may fold where larger ones do not, and voxels may refuse so fine a lattice.
         least=$(calc "2 * $smallest")$([[ $unit =~ ^(m|cm|mm|um)$ ]] && echo "$unit")
         echo "refine: round $round: $what: $(said): once more with no size below $least" >&2
         grade

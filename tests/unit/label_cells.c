@@ -174,6 +174,82 @@ TEST(finer_at_interfaces)
     }
 }
 
+/* Six tetrahedra about a cube of half edge `half`, m, and the sizes at its corners: `least` at the one where
+ * x, y and z are largest, six times as much at the others. */
+struct sized_cube {
+    struct cells cells;
+    double x[24], size[8];
+    int32_t node[24];
+};
+
+static void sized_cube(double half, double least, struct sized_cube *cube)
+{
+    static const int32_t node[24] = {0, 1, 3, 7, 0, 3, 2, 7, 0, 2, 6, 7, 0, 6, 4, 7, 0, 4, 5, 7, 0, 5, 1, 7};
+    memcpy(cube->node, node, sizeof node);
+    for (int n = 0; n < 8; n++) {
+        for (int d = 0; d < 3; d++) {
+            cube->x[3 * n + d] = n >> d & 1 ? half : -half;
+        }
+        cube->size[n] = n == 7 ? least : 6 * least;
+    }
+    cube->cells = (struct cells){3, 8, cube->x, 6, cube->node};
+}
+
+TEST(by_sizes)
+{
+    struct sized_cube cube;
+    FREED_BY(labelled_free) struct labelled plain = label("sphere", 1), made = label("sphere", 1);
+    struct label_cells_options options = {.spacing = 8e-3};
+    mesh_of(&plain, options);
+
+    /* Sizes of about those there are, and larger ones, change nothing. */
+    options.sized = &cube.cells;
+    options.size = cube.size;
+    for (double least = 7e-3; least < 1; least *= 5) {
+        sized_cube(30e-3, least, &cube);
+        mesh_of(&made, options);
+        assert_int_equal(made.mesh.cell_count, plain.mesh.cell_count);
+        assert_memory_equal(made.mesh.x, plain.mesh.x, (size_t)plain.mesh.node_count * 3 * sizeof(double));
+        assert_true(made.mesh.unsized == 0);
+    }
+
+    /* Everywhere half: the lattice of half the spacing. */
+    sized_cube(30e-3, 0.91 * 1e-3, &cube);
+    for (int n = 0; n < 8; n++) {
+        cube.size[n] = 0.91 * 4e-3;
+    }
+    mesh_of(&made, options);
+    mesh_of(&plain, (struct label_cells_options){.spacing = 4e-3});
+    assert_int_equal(made.mesh.node_count, plain.mesh.node_count);
+    assert_int_equal(made.mesh.cell_count, plain.mesh.cell_count);
+
+    /* Finer to one side: mean edges about the sizes there. */
+    options.spacing = 6e-3;
+    sized_cube(32e-3, 1.2e-3, &cube);
+    for (int i = 0; i < 4; i++) {
+        static const char *const names[] = {"sphere", "two", "four", "atlas"};
+        FREED_BY(labelled_free) struct labelled other = label(names[i], 1);
+        mesh_of(&other, options);
+        double volume[2] = {0};
+        int64_t count[2] = {0};
+        struct cells cells = label_cells_view(&other.mesh);
+        for (int64_t c = 0; c < cells.count; c++) {
+            double middle[3];
+            cell_centroid(&cells, c, middle);
+            bool fine = middle[0] > 0 && middle[1] > 0 && middle[2] > 0;
+            volume[fine] += cell_volume(&cells, c);
+            count[fine]++;
+        }
+        assert_true(volume[0] / (double)count[0] > 3 * volume[1] / (double)count[1]);
+    }
+
+    /* Sizes over a part of the body. */
+    options.spacing = 8e-3;
+    sized_cube(10e-3, 2e-3, &cube);
+    mesh_of(&made, options);
+    assert_true(made.mesh.unsized > 0.5 && made.mesh.unsized < 1);
+}
+
 /* The shares sum to 1, their difference has the gradient it says, and far from the grid all is outside. */
 TEST(shares)
 {

@@ -226,6 +226,13 @@ static void fit(struct label_body *body, double far, double least, bool around)
     }
 }
 
+static void begin(const struct label_cells_options *options, const char *step)
+{
+    if (options->begin != NULL) {
+        options->begin(step);
+    }
+}
+
 /* Move nodes where labels meet onto the interfaces; improve poor cells; and correct the volumes of labels. */
 static enum status improve(struct label_body *body, struct error *error)
 {
@@ -236,12 +243,15 @@ static enum status improve(struct label_body *body, struct error *error)
         body->place[i] = NAN;
     }
     for (int sweep = 0; sweep < LABEL_CELLS_SWEEPS; sweep++) {
+        begin(body->options, "moving nodes onto interfaces");
         find_places(body, true);
         fit(body, 0.01 * body->voxel, LABEL_CELLS_GOOD, false);
         label_cells_repair(body, LABEL_CELLS_GOOD);
     }
+    begin(body->options, "moving nodes that are far from interfaces");
     find_places(body, false);
     fit(body, LABEL_CELLS_NEAR * body->voxel, 1.0, true);
+    begin(body->options, "correcting volumes");
     find_places(body, true);
     RETURN_IF_ERROR(label_cells_volumes(body, error));
     label_cells_repair(body, 1.0);
@@ -263,6 +273,7 @@ static enum status make(const struct labels *labels, const struct label_cells_op
     FREED_BY(body_free)
     struct label_body body = {
         .labels = labels, .options = options, .mesh = mesh, .voxel = labels_voxel(labels)};
+    begin(options, "cutting the lattice");
     RETURN_IF_ERROR(lattice_make(labels, options, &lattice, error));
     RETURN_IF_ERROR(lattice_cut(&lattice, error));
     RETURN_IF_ERROR(lattice_cells(&lattice, mesh, &body.between, error));
@@ -281,6 +292,7 @@ enum status label_cells_make(const struct labels *labels, const struct label_cel
 {
     *mesh = (struct label_cells){.dim = labels->dim};
     enum status status = make(labels, options, mesh, error);
+    begin(options, NULL);
     if (status != STATUS_OK) {
         label_cells_free(mesh);
     }

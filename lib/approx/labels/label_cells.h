@@ -18,9 +18,14 @@ struct label_cells_options {
     double spacing; /* of the lattice, m: edge of its cubes (2D: of its triangles) */
     double finest;  /* 3D: edge of the cubes at interfaces, m: the spacing is halved until it is no larger; 0:
                        the same as elsewhere */
-    const bool *fine; /* labels->count: those with fine interfaces; NULL: all */
-    const bool *keep; /* labels->count: cells of this label are wanted; not label 0 */
-    bool largest;     /* keep only the largest of several connected bodies: voxels of others become outside */
+    const bool *fine;          /* labels->count: those with fine interfaces; NULL: all */
+    const struct cells *sized; /* 3D: cells over the body, with sizes at their nodes */
+    const double *size; /* sized->node_count: wanted length of edges, m, positive, linear within cells; cubes
+                           are halved where it is smaller than theirs; NULL: nowhere */
+    const bool *keep;   /* labels->count: cells of this label are wanted; not label 0 */
+    bool largest; /* keep only the largest of several connected bodies: voxels of others become outside */
+    /* Called at the beginning of each step, and at the end with NULL; NULL: not. */
+    void (*begin)(const char *step);
 };
 
 /* Bounds of the angles of cells, degrees, which label_cells_make meets if it can. */
@@ -47,10 +52,12 @@ struct label_cells {
     double speck_volume; /* and their volume, m3 */
     int64_t astray;      /* nodes of interfaces farther from them than LABEL_CELLS_MOST_ASTRAY voxels */
     double farthest;     /* largest distance of such a node, m */
+    double unsized;      /* share of the body's cubes outside of the cells with sizes */
 };
 
 /* Make the cells. STATUS_INPUT if there is no voxel of a label to keep, or no cell at this spacing; if the
- * finest lattice would have more than 2^26 points everywhere, or needs more than seven halvings. */
+ * finest lattice would have more than 2^26 points everywhere; if sizes need more than seven halvings, or none
+ * lies in the body. */
 MUST_CHECK enum status label_cells_make(const struct labels *labels,
                                         const struct label_cells_options *options, struct label_cells *mesh,
                                         struct error *error);

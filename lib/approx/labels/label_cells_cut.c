@@ -387,7 +387,7 @@ enum status lattice_cells(const struct lattice *lattice, struct label_cells *mes
                           struct error *error)
 {
     FREED_BY(cutting_free) struct cutting cutting = {.lattice = lattice, .mesh = mesh};
-    *mesh = (struct label_cells){.dim = lattice->dim};
+    *mesh = (struct label_cells){.dim = lattice->dim, .unsized = lattice->unsized};
     RETURN_IF_ERROR(set_nodes(&cutting, error));
     for (int64_t c = 0; c < lattice->cell_count; c++) {
         RETURN_IF_ERROR(cut_cell(&cutting, lattice->cell + c * (lattice->dim + 1), error));

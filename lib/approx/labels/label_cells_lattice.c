@@ -3,13 +3,76 @@
 
 #include <math.h>
 
+/* The level of an octree whose cells have edges nearest to `size` by ratio; level 0 has cubes of edge
+ * `spacing`. */
+static int size_level(double spacing, double size)
+{
+    /* Of tetrahedra of the lattice, with two edges along axes and four half diagonals, by cells_node_spacing.
+     */
+    double mean_edge = (1 + sqrt(3)) / 3 * spacing;
+    return (int)fmin(fmax(round(log2(mean_edge / size)), 0), OCTREE_MOST_LEVELS);
+}
+
+/* The size at a place in a cell, linear between its nodes. */
+static double size_at(const struct cells *cells, const double *size, int64_t cell, const double at[3])
+{
+    const int32_t *node = cells->node + 4 * cell;
+    double share[4], value = 0, least = INFINITY, most = 0;
+    cell_barycentric(cells, cell, at, share);
+    for (int k = 0; k < 4; k++) {
+        value += share[k] * size[node[k]];
+        least = fmin(least, size[node[k]]);
+        most = fmax(most, size[node[k]]);
+    }
+    return fmin(fmax(value, least), most);
+}
+
+/* Raise wish[] of the finest cubes to the levels that the sizes need. There are count[3] cubes of this edge,
+ * the first from low[3], m. Cubes outside of the cells with sizes keep their wish. *unsized: the share of the
+ * cubes in the body outside of the cells with sizes; STATUS_INPUT if it is 1. */
+static enum status sizes_wish(const struct labels *labels, const struct label_cells_options *options,
+                              int levels, const int64_t count[3], const double low[3], double edge,
+                              uint8_t *wish, double *unsized, struct error *error)
+{
+    struct cells scaled = *options->sized;
+    int64_t total = count[0] * count[1] * count[2], doubly = 0, within = 0, beyond = 0;
+    NEW_SCRATCH(double, x, 3 * scaled.node_count, error);
+    NEW_SCRATCH(int32_t, owner, total, error);
+    for (int64_t i = 0; i < 3 * scaled.node_count; i++) {
+        x[i] = (options->sized->x[i] - low[i % 3]) / edge - 0.5;
+    }
+    scaled.x = x;
+    raster_cells(&scaled, 1, count, owner, &doubly);
+#pragma omp parallel for schedule(static) reduction(+ : within, beyond)
+    for (int64_t c = 0; c < total; c++) {
+        const int64_t cube[3] = {c % count[0], c / count[0] % count[1], c / count[0] / count[1]};
+        const double at[3] = {(double)cube[0], (double)cube[1], (double)cube[2]};
+        const double centre[3] = {low[0] + edge * (at[0] + 0.5), low[1] + edge * (at[1] + 0.5),
+                                  low[2] + edge * (at[2] + 0.5)};
+        bool inside = options->keep[labels_at(labels, centre)];
+        within += inside;
+        beyond += inside && owner[c] < 0;
+        if (owner[c] >= 0) {
+            int level = size_level(options->spacing, size_at(&scaled, options->size, owner[c], at));
+            uint8_t wanted = OCTREE_WISH(level < levels - 1 ? level : levels - 1, false);
+            wish[c] = wanted > wish[c] ? wanted : wish[c];
+        }
+    }
+    if (within > 0 && beyond == within) {
+        return fail(error, STATUS_INPUT,
+                    "the sizes lie elsewhere: none of their cells reaches into the body");
+    }
+    *unsized = within > 0 ? (double)beyond / (double)within : 0;
+    return STATUS_OK;
+}
+
 static const int64_t most_points = (int64_t)1 << 26;
 
 /* All points that a lattice may have: corners of the finest cubes, first index fastest, then their centres;
  * in 2D rows of points, odd ones shifted by half a spacing. */
 struct points {
     struct lattice *lattice;
-    int levels;             /* those at interfaces have the finest */
+    int levels, fine;       /* fine: the level of cubes at interfaces */
     double spacing, low[3]; /* of the finest level */
     int64_t count[3], corners, total;
     uint16_t *label; /* total */
@@ -163,8 +226,8 @@ static enum status add_triangles(struct points *points)
     return STATUS_OK;
 }
 
-/* Mark the finest cubes that contain an interface of a label of fine[] (NULL: of any). */
-static void find_fine(const struct points *points, const bool *fine, const int64_t cubes[3], bool *wanted)
+/* Wish for the finest cubes that contain an interface of a label of fine[] (NULL: of any) their level. */
+static void find_fine(const struct points *points, const bool *fine, const int64_t cubes[3], uint8_t *wish)
 {
 #pragma omp parallel for schedule(static)
     for (int64_t c = 0; c < cubes[0] * cubes[1] * cubes[2]; c++) {
@@ -180,17 +243,24 @@ static void find_fine(const struct points *points, const bool *fine, const int64
             mixed = mixed || label != first;
             named = named || fine[label];
         }
-        wanted[c] = mixed && named;
+        wish[c] = mixed && named ? OCTREE_WISH(points->fine, true) : 0;
     }
 }
 
 static enum status add_tetrahedra(struct points *points, const struct label_cells_options *options)
 {
+    SCRATCH uint8_t *wish = NULL;
     FREED_BY(octree_free) struct octree octree = {0};
     const int64_t cubes[3] = {points->count[0] - 1, points->count[1] - 1, points->count[2] - 1};
-    NEW_SCRATCH(bool, wanted, cubes[0] * cubes[1] * cubes[2], points->error);
-    find_fine(points, options->fine, cubes, wanted);
-    RETURN_IF_ERROR(octree_make(points->levels, cubes, wanted, &octree, points->error));
+    RETURN_IF_ERROR(NEW_ARRAY(&wish, cubes[0] * cubes[1] * cubes[2], points->error));
+    if (points->fine > 0) {
+        find_fine(points, options->fine, cubes, wish);
+    }
+    if (options->size != NULL) {
+        RETURN_IF_ERROR(sizes_wish(points->lattice->labels, options, points->levels, cubes, points->low,
+                                   points->spacing, wish, &points->lattice->unsized, points->error));
+    }
+    RETURN_IF_ERROR(octree_make(points->levels, cubes, wish, &octree, points->error));
     points->marking = true;
     RETURN_IF_ERROR(octree_cells(&octree, add_tetrahedron, points));
     points->marking = false;
@@ -226,18 +296,28 @@ static enum status make_nodes(struct points *points, struct error *error)
     return STATUS_OK;
 }
 
-/* Count the levels of cubes. */
+/* Count the levels of cubes needed at interfaces and for sizes. */
 static enum status count_levels(const struct label_cells_options *options, struct points *points,
                                 struct error *error)
 {
-    for (; options->finest > 0 && points->spacing > options->finest * (1 + 1e-9); points->levels++) {
-        if (points->levels == OCTREE_MOST_LEVELS) {
+    double least = INFINITY;
+    while (options->finest > 0 && ldexp(points->spacing, -points->fine) > options->finest * (1 + 1e-9)) {
+        if (++points->fine == OCTREE_MOST_LEVELS) {
             return fail(error, STATUS_INPUT,
                         "spacing %g m at interfaces: at least 1/%d of the spacing inside, %g m",
                         options->finest, 1 << (OCTREE_MOST_LEVELS - 1), options->spacing);
         }
-        points->spacing /= 2;
     }
+    for (int64_t n = 0; options->size != NULL && n < options->sized->node_count; n++) {
+        least = fmin(least, options->size[n]);
+    }
+    int level = least < INFINITY ? size_level(points->spacing, least) : 0;
+    if (level >= OCTREE_MOST_LEVELS) {
+        return fail(error, STATUS_INPUT, "a size of %g m: at least 1/%d of the spacing, %g m", least,
+                    1 << (OCTREE_MOST_LEVELS - 1), options->spacing);
+    }
+    points->levels = 1 + (level > points->fine ? level : points->fine);
+    points->spacing = ldexp(points->spacing, 1 - points->levels);
     return STATUS_OK;
 }
 
@@ -252,8 +332,9 @@ enum status lattice_make(const struct labels *labels, const struct label_cells_o
     FREED_BY(points_free)
     struct points points = {.lattice = lattice, .levels = 1, .spacing = options->spacing, .error = error};
     *lattice = (struct lattice){.labels = labels, .keep = options->keep, .dim = labels->dim};
-    if (options->finest > 0 && labels->dim == 2) {
-        return fail(error, STATUS_INPUT, "finer interfaces are for bodies in space, not for slices");
+    if ((options->finest > 0 || options->size != NULL) && labels->dim == 2) {
+        return fail(error, STATUS_INPUT, "%s are for bodies in space, not for slices",
+                    options->finest > 0 ? "finer interfaces" : "sizes");
     }
     RETURN_IF_ERROR(count_levels(options, &points, error));
     RETURN_IF_ERROR(size_points(&points, error));

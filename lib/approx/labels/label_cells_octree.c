@@ -37,7 +37,7 @@ static enum status dilate(const int64_t count[3], bool *marked, struct error *er
     return status;
 }
 
-enum status octree_make(int levels, const int64_t count[3], const bool *wanted, struct octree *octree,
+enum status octree_make(int levels, const int64_t count[3], uint8_t *wish, struct octree *octree,
                         struct error *error)
 {
     *octree = (struct octree){.levels = levels};
@@ -47,16 +47,23 @@ enum status octree_make(int levels, const int64_t count[3], const bool *wanted, 
         }
     }
     for (int l = levels - 1; l > 0; l--) {
-        /* Cubes that touch a split or wanted one have at least its level: their parents are split. */
+        /* Cubes that touch a split one, or a wish with `around`, have at least this level: their parents are
+         * split. */
         const int64_t *fine = octree->count[l], *coarse = octree->count[l - 1];
         NEW_SCRATCH(bool, marked, cubes(fine), error);
-        memcpy(marked, l < levels - 1 ? octree->split[l] : wanted, (size_t)cubes(fine) * sizeof *marked);
+        for (int64_t i = 0; i < cubes(fine); i++) {
+            marked[i] = (l < levels - 1 && octree->split[l][i]) || wish[i] == OCTREE_WISH(l, true);
+        }
         RETURN_IF_ERROR(dilate(fine, marked, error));
         RETURN_IF_ERROR(NEW_ARRAY(&octree->split[l - 1], cubes(coarse), error));
         for (int64_t i = 0; i < cubes(fine); i++) {
-            const int64_t parent[3] = {i % fine[0] / 2, i / fine[0] % fine[1] / 2, i / fine[0] / fine[1] / 2};
-            bool *split = &octree->split[l - 1][index_of(coarse, parent)];
-            *split = *split || marked[i];
+            const int64_t at[3] = {i % fine[0], i / fine[0] % fine[1], i / fine[0] / fine[1]};
+            const int64_t parent = index_of(coarse, (const int64_t[]){at[0] / 2, at[1] / 2, at[2] / 2});
+            bool first = (at[0] | at[1] | at[2]) % 2 == 0;
+            bool *split = &octree->split[l - 1][parent];
+            *split = *split || marked[i] || wish[i] >= OCTREE_WISH(l, false);
+            /* Parents take the largest wish, in place: their index is at most that of their children. */
+            wish[parent] = first || wish[i] > wish[parent] ? wish[i] : wish[parent];
         }
     }
     return STATUS_OK;

@@ -24,7 +24,8 @@ struct lattice {
                      on the interface */
     int64_t *edge_ptr; /* node_count + 1: the edges at each node, */
     int32_t *edge_idx;
-    bool *on; /* node_count: moved onto an interface */
+    bool *on;       /* node_count: moved onto an interface */
+    double unsized; /* as of struct label_cells */
 };
 
 /* Lay the lattice over the labels and find the label of each point. */
@@ -49,10 +50,14 @@ struct octree {
                                         the finest */
 };
 
-/* Refine an octree so that the wanted[] cubes of the finest level, and those that touch them, have this
- * level, and cubes that touch differ by at most one level. count[] are multiples of 2^(levels - 1). */
-MUST_CHECK enum status octree_make(int levels, const int64_t count[3], const bool *wanted,
-                                   struct octree *octree, struct error *error);
+/* The wanted refinement at a cube of the finest level: the least level, and whether all cubes that touch it
+ * must have that level, too. */
+#define OCTREE_WISH(level, around) ((uint8_t)(2 * (level) + (around)))
+
+/* Refine an octree so that wish[] of the finest cubes holds, and cubes that touch differ by at most one
+ * level. count[] are multiples of 2^(levels - 1); wish[] is changed. */
+MUST_CHECK enum status octree_make(int levels, const int64_t count[3], uint8_t *wish, struct octree *octree,
+                                   struct error *error);
 void octree_free(struct octree *octree);
 
 /* Call visit(context, corner) for each tetrahedron between the leaves: four points, x, y, z in halves of the
