@@ -96,6 +96,7 @@ finds() {
         for unit in 3:1 4:1e3 5:1 6:1e-3; do
             lie "$(awk -v u="${unit#*:}" 'BEGIN { print 0, -2 * u, 0, 10 * u, 0, 0, 3 * u, 20 * u, -u, 0, 0, 30 * u }')"
             finds "${unit%:*}.nii"
+            grep -q 'sform and qform differ' said
             [ "$(grep -c 'no unit' said)" = $((${unit%:*} == 3)) ]
         done
     done
