@@ -96,6 +96,7 @@ finds() {
         for unit in 3:1 4:1e3 5:1 6:1e-3; do
             lie "$(awk -v u="${unit#*:}" 'BEGIN { print 0, -2 * u, 0, 10 * u, 0, 0, 3 * u, 20 * u, -u, 0, 0, 30 * u }')"
             finds "${unit%:*}.nii"
+            grep -q 'sform and qform differ' said
             [ "$(grep -c 'no unit' said)" = $((${unit%:*} == 3)) ]
         done
     done
@@ -240,8 +241,8 @@ END
         text "$format" "$lines"
         sample -p <(echo 0 0 0) image 2>&1 > found | sed 's/^sample: image: //' | cmp - <(printf "${message:+$message\n}")
     done << 'END'
-nrrd|dimension: 3\nsizes: 2 2 2\nspace: LPS\nspace orign: (1,2,3)\nspace directions: (1,0,0) (0,1,0) (0,0,1)\nmin: 1\nmin: 1|has no space origin: the first voxel lies at 0
-mha|NDims = 3\nDimSize = 2 2 2\nElementSpacing = 1 1 1\nColor = 1 0 0 1\nOfset = 1 2 3\nElementSizes = 1 1 1|has no Offset: the first voxel lies at 0
+nrrd|dimension: 3\nsizes: 2 2 2\nspace: LPS\nspace orign: (1,2,3)\nspace directions: (1,0,0) (0,1,0) (0,0,1)\nmin: 1\nmin: 1|has no space origin: the first voxel lies at 0; fields that are not known, left out: space orign
+mha|NDims = 3\nDimSize = 2 2 2\nElementSpacing = 1 1 1\nColor = 1 0 0 1\nOfset = 1 2 3\nElementSizes = 1 1 1|has no Offset: the first voxel lies at 0; fields that are not known, left out: Ofset, ElementSizes
 mha|NDims = 3\nDimSize = 2 2 2\nElementSpacing = 1 1 1 9\nOffset = 0 0 0|
 END
 }

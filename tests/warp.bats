@@ -178,10 +178,16 @@ setup_file() {
     grep -q '^warp: 111630 voxels were left by the body$' said # 61 x 61 x 30
 }
 
-@test "a body that moves out of the image is told; one within it is not" {
+@test "outside of the body: values by label; a body that moves out of the image is not turned" {
+    ball=$BATS_FILE_TMPDIR/ball.nii.gz
     with_u cube.mts 'print 0, 0, -.5 * $3' > flat.dat
-    run -0 --separate-stderr warp -i nearest --vacated 7 --fill 8 -o filled.nii "$BATS_FILE_TMPDIR/ball.nii.gz" flat.dat
+    run -0 --separate-stderr warp -i nearest --vacated 2=7,5=8 --fill 0=1 -o filled.nii "$ball" flat.dat
     [[ $stderr == *"it shows a part of the body"* && $stderr != *"old value"* ]] # the grid is oblique
+    run -0 --separate-stderr warp -i nearest --vacated 2=7,8 -o others.nii "$ball" flat.dat
+    [ "$(nifti volumes filled.nii | cut -d' ' -f1 | xargs)" = "0 1 2 5 7 8" ]
+    [ "$(nifti volumes others.nii | cut -d' ' -f1 | xargs)" = "0 2 5 7 8" ]
+    refused 2 "--fill: no voxel of $ball has the label 3" warp --fill 3=1 -o out.nii "$ball" flat.dat
+    refused 2 "--vacated 2=1,2=3: two values for 2" warp --vacated 2=1,2=3 -o out.nii "$ball" flat.dat
     with_u cube.mts 'print 0, 0, .02' > up.dat
     run -0 --separate-stderr warp --vacated 0 -o up.nii "$BATS_FILE_TMPDIR/scan.nii.gz" up.dat
     [ -z "$stderr" ]
@@ -196,6 +202,9 @@ setup_file() {
         run -0 --separate-stderr warp $option 255 -o good.nii rgb.nii u.dat
     done
     [ ! -e moved.nii ]
+    nifti change "$BATS_FILE_TMPDIR/scan.nii.gz" nan.nii nan
+    run -0 --separate-stderr warp -o moved.nii nan.nii u.dat
+    [ "$stderr" = "warp: nan.nii: 1 values are not finite: neither is what is interpolated beside them" ]
 }
 
 @test "on the grid of another image" {

@@ -1,8 +1,8 @@
 static const char usage[] =
     "warp - move an image by a displacement field, or write the field as an image\n"
     "\n"
-    "usage: warp [-i METHOD] [--like GRID] [--fill V] [--vacated V] [--inverse] [--frame K] [-v] [-o FILE]\n"
-    "            IMAGE [FILE]\n"
+    "usage: warp [-i METHOD] [--like GRID] [--fill VALUES] [--vacated VALUES] [--inverse] [--frame K] [-v]\n"
+    "            [-o FILE] IMAGE [FILE]\n"
     "       warp --field [--inverse] [--frame K] [-v] [-o FILE] GRID [FILE]\n"
     "\n"
     "Reads an image (NIfTI, NRRD or MetaImage; -: standard input) and a stream with nodes.x (m), cells\n"
@@ -35,8 +35,10 @@ static const char usage[] =
     "  -i, --interpolation METHOD\n"
     "                     nearest (for labels), linear (default) or cubic (Keys 1981)\n"
     "      --like GRID    write on the grid of this image, not that of IMAGE\n"
-    "      --fill V       the value of all voxels outside of the moved body\n"
-    "      --vacated V    the value of voxels where the body was and is no more; without it that of --fill\n"
+    "      --fill VALUES  the value of all voxels outside of the moved body, V, or by their label in IMAGE,\n"
+    "                     LABEL=V,...; a V in this list is for all other labels\n"
+    "      --vacated VALUES  the same for voxels where the body was and is no more; labels without a value\n"
+    "                     have that of --fill\n"
     "      --field        write the displacement field\n"
     "      --inverse      the other way: at X the value of IMAGE, which shows the moved body, at X + u(X)\n"
     "      --frame K      take u.frame.K in place of u\n"
@@ -46,16 +48,17 @@ static const char usage[] =
     "Examples:\n"
     "  warp -i linear T1.nii.gz u.dat > predicted.nii.gz\n"
     "  warp -i nearest --vacated 0 -o moved.nii.gz labels.nii.gz u.dat\n"
+    "  warp -i nearest --vacated 1=2 --fill 3=0 labels.nii.gz u.dat > resected.nii.gz\n"
     "  warp --field -o field.nrrd T1.nrrd u.dat\n"
     "  plastimatch warp --input T1.nrrd --xf field.nrrd --output-img predicted.nrrd\n";
 
 #include "comparison.h"
 #include "images/images.h"
+#include "warp/label_values.h"
 
 #include "approx/field/motion.h"
 #include "base/vector.h"
 
-#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -76,8 +79,8 @@ struct warp_report {
 struct warp_job {
     enum image_method method;
     bool inverse;
-    double fill, vacated;       /* values outside of the moved body, and where it has been; NAN: not given */
-    const struct image *source; /* NULL: the field is written */
+    struct label_values fill, vacated; /* outside of the moved body, and where it has been */
+    const struct image *source;        /* NULL: the field is written */
     double source_voxel[3][4];
     const struct motion *motion;
     const int32_t *owner,
@@ -107,6 +110,17 @@ static void find_place(const struct warp_job *job, int64_t v, const double x[3],
     report->inconsistency = fmax(report->inconsistency, residual);
 }
 
+/* The value that the options give a voxel outside of the moved body; NAN: none. */
+static double given_value(const struct warp_job *job, const double voxel[3], bool vacated)
+{
+    double label = NAN;
+    if (job->source->components == 1 && image_sample(job->source, IMAGE_NEAREST, voxel, &label)) {
+        label = image_whole(job->source, label);
+    }
+    double value = vacated ? label_value(&job->vacated, label) : NAN;
+    return isnan(value) ? label_value(&job->fill, label) : value;
+}
+
 /* Set the value of the moved image at voxel v, that of the source at `place`. */
 static void put_value(const struct warp_job *job, int64_t v, const double place[3],
                       struct warp_report *report)
@@ -114,16 +128,16 @@ static void put_value(const struct warp_job *job, int64_t v, const double place[
     size_t components = job->result->components;
     double voxel[3], *value = job->result->values + (size_t)v * components;
     bool outside = job->owner[v] < 0, vacated = outside && job->other[v] >= 0;
-    double given = !outside ? NAN : vacated && !isnan(job->vacated) ? job->vacated : job->fill;
+    image_map(&job->source_voxel[0][0], place, voxel);
+    double given = outside ? given_value(job, voxel, vacated) : NAN, others = label_value(&job->fill, NAN);
     report->vacated += vacated;
     report->left += vacated && isnan(given);
-    image_map(&job->source_voxel[0][0], place, voxel);
     if (isnan(given) && image_sample(job->source, job->method, voxel, value)) {
         return;
     }
     report->beyond += isnan(given);
     for (size_t c = 0; c < components; c++) {
-        value[c] = !isnan(given) ? given : isnan(job->fill) ? 0 : job->fill;
+        value[c] = !isnan(given) ? given : isnan(others) ? 0 : others;
     }
 }
 
@@ -194,7 +208,7 @@ static void print_report(const struct tool *tool, const struct warp_job *job, co
     }
     if (report->beyond > 0) {
         tool_note(tool, "%jd voxels show places outside of the image: %s there", report->beyond,
-                  tool_given(tool, "fill") ? "the value of --fill" : "0");
+                  isnan(label_value(&job->fill, NAN)) ? "0" : "the value of --fill");
     }
     if (report->left > 0) {
         tool_note(tool, "%jd voxels that the body left keep their old value: see --vacated", report->left);
@@ -224,18 +238,6 @@ static void print_report(const struct tool *tool, const struct warp_job *job, co
     }
 }
 
-/* The value of an option, which the image can have; NAN: not given. */
-static double given_value(const struct tool *tool, const char *option, const struct image *image)
-{
-    double least, most, value = tool_number(tool, option, -DBL_MAX, DBL_MAX, NAN);
-    image_range(image, &least, &most);
-    if (value < least || value > most) {
-        tool_fail(tool, STATUS_INPUT, "--%s %g: values of %s are from %g to %g", option, value,
-                  tool->operands[0], least, most);
-    }
-    return value;
-}
-
 /* Make the result, all zero: an image like the source on the grid of another one, or the field there. */
 static void new_result(const struct tool *tool, bool field, struct image *source, const struct image *grid,
                        struct image *result)
@@ -257,6 +259,18 @@ static void new_result(const struct tool *tool, bool field, struct image *source
     memcpy(result->to_world, grid->to_world, sizeof result->to_world);
     result->space = grid->space;
     result->version = grid->version;
+}
+
+static void note_not_finite(const struct tool *tool, const struct image *image)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < image_voxels(image) * image->components; i++) {
+        count += isfinite(image->values[i]) ? 0 : 1;
+    }
+    if (count > 0) {
+        tool_note(tool, "%s: %zu values are not finite: neither is what is interpolated beside them",
+                  tool->operands[0], count);
+    }
 }
 
 /* Build the motion, with gradients of the field that mtled computed, if the stream has it. */
@@ -318,8 +332,8 @@ int main(int argc, char *argv[])
         snprintf(section, sizeof section, "u.frame.%jd", tool_integer(&tool, "frame", 0, INT32_MAX, 0));
     }
     tool_read_image(&tool, tool.operands[0], &image);
-    job.fill = given_value(&tool, "fill", &image);
-    job.vacated = given_value(&tool, "vacated", &image);
+    label_values_parse(&tool, "fill", &image, &job.fill);
+    label_values_parse(&tool, "vacated", &image, &job.vacated);
     if (tool_given(&tool, "like")) {
         tool_read_image(&tool, tool_value(&tool, "like"), &like);
     }
@@ -334,6 +348,7 @@ int main(int argc, char *argv[])
     note_image_outside(&tool, &image, &cells, unseen);
     if (!field) {
         other = find_owners(&tool, grid, &cells, unseen, &ignored);
+        note_not_finite(&tool, &image);
         job.source = &image;
     }
     new_result(&tool, field, &image, grid, &result);

@@ -2,7 +2,6 @@
 
 #include "base/box.h"
 #include "base/lists.h"
-#include "base/vector.h"
 #include "cell_report.h"
 #include "images/images.h"
 
@@ -271,17 +270,8 @@ static void read_layer(const struct tool *tool, const char *text, struct image *
 static void check_grid(const struct tool *tool, const struct image *first, const struct image *image,
                        const char *name)
 {
-    bool same = memcmp(first->size, image->size, sizeof first->size) == 0;
-    for (int corner = 0; corner < 8 && same; corner++) {
-        double voxel[3], here[3], there[3];
-        for (int d = 0; d < 3; d++) {
-            voxel[d] = corner >> d & 1 ? (double)first->size[d] : 0;
-        }
-        image_world(first, voxel, here);
-        image_world(image, voxel, there);
-        same = vector_distance(3, here, there) <= 0.01 * image_step(first, 0);
-    }
-    if (!same) {
+    if (memcmp(first->size, image->size, sizeof first->size) != 0 ||
+        image_distance(first, image) > 0.01 * image_step(first, 0)) {
         tool_fail(tool, STATUS_INPUT, "%s: another grid than that of the first image: resample it", name);
     }
 }

@@ -154,6 +154,21 @@ void image_world(const struct image *image, const double voxel[3], double world[
     image_map(&image->to_world[0][0], voxel, world);
 }
 
+double image_distance(const struct image *a, const struct image *b)
+{
+    double most = 0;
+    for (int corner = 0; corner < 8; corner++) {
+        double voxel[3], at_a[3], at_b[3];
+        for (int d = 0; d < 3; d++) {
+            voxel[d] = corner >> d & 1 ? (double)(a->size[d] - 1) : 0;
+        }
+        image_world(a, voxel, at_a);
+        image_world(b, voxel, at_b);
+        most = fmax(most, vector_distance(3, at_a, at_b));
+    }
+    return most;
+}
+
 void image_to_voxel(const struct image *image, double inverse[3][4])
 {
     const double(*m)[4] = image->to_world;

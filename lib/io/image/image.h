@@ -127,6 +127,9 @@ void image_world(const struct image *image, const double voxel[3], double world[
 /* The length of a voxel along its axis, m. */
 double image_step(const struct image *image, int axis);
 
+/* The largest distance between the places of a voxel in two images of the same sizes, m. */
+double image_distance(const struct image *a, const struct image *b);
+
 /* ---- values between the voxels ---- */
 
 enum image_method { IMAGE_NEAREST, IMAGE_LINEAR, IMAGE_CUBIC, IMAGE_METHOD_COUNT };

@@ -62,8 +62,7 @@ static bool quaternion_of(double matrix[3][4], double quatern[3], double pixdim[
             return false;
         }
     }
-    /* (1 + trace) / 4 is a^2; with two signs changed it is b^2, c^2 or d^2. Divide by the largest of these.
-     */
+    /* (1 + trace) / 4 is a^2; with two signs changed it is b^2, c^2 or d^2. The largest of these divides. */
     double square[4] = {1 + r[0][0] + r[1][1] + r[2][2], 1 + r[0][0] - r[1][1] - r[2][2],
                         1 - r[0][0] + r[1][1] - r[2][2], 1 - r[0][0] - r[1][1] + r[2][2]};
     double product[4][4] = {{square[0], r[2][1] - r[1][2], r[0][2] - r[2][0], r[1][0] - r[0][1]},
@@ -109,6 +108,14 @@ static enum status nifti_space(const struct nifti *header, struct image *image, 
             matrix[i][i] = fabs(header->pixdim[1 + i]);
         }
         image_note(image, "has neither sform nor qform: first voxel at the origin, axes taken to be RAS");
+    }
+    if (header->sform > 0 && header->qform > 0) {
+        struct image other = *image;
+        memcpy(image->to_world, matrix, sizeof matrix);
+        from_qform(header, other.to_world);
+        if (!(image_distance(image, &other) <= 0.5 * fmin(image_step(image, 0), image_step(image, 1)))) {
+            image_note(image, "sform and qform differ by more than half a voxel: sform taken");
+        }
     }
     for (int i = 0; i < 12; i++) {
         matrix[i / 4][i % 4] *= image->unit;

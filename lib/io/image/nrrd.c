@@ -171,6 +171,9 @@ static const struct header_field fields[] = {
     {"byte skip|byteskip", HEADER_INTEGER, AT(layout.skip_bytes), -1, HEADER_SKIP},
     {"data file|datafile", HEADER_FILE, AT(layout)},
     {"content", HEADER_TEXT, AT(image)},
+    {"number|block size|blocksize|min|max|old min|oldmin|old max|oldmax|labels|thicknesses|sample units|"
+     "sampleunits",
+     HEADER_LEFT},
 };
 
 enum { FIELDS = sizeof fields / sizeof *fields };
@@ -255,6 +258,7 @@ static enum status place(struct nrrd *nrrd, const struct text_header *header, st
     if (nrrd->has_directions && !header_has(header, ORIGIN)) {
         image_note(image, "has no space origin: the first voxel lies at 0");
     }
+    header_note_unknown(header, image);
     RETURN_IF_ERROR(header_sizes(size, component < 0 ? 1 : nrrd->size[component],
                                  component >= 0 && nrrd->kind[component] == COLOUR, &nrrd->layout, image,
                                  error));

@@ -195,6 +195,7 @@ static enum status take(const struct header_field *field, void *context, const s
         image_describe(*(struct image **)at, header->value);
         return STATUS_OK;
     case HEADER_SET:
+    case HEADER_LEFT:
         break;
     }
     return field->set != NULL ? field->set(context, header, error) : STATUS_OK;
@@ -205,13 +206,21 @@ enum status header_set(struct text_header *header, const struct header_field *fi
 {
     for (size_t f = 0; f < count; f++) {
         if (header_is(fields[f].keys, header->key)) {
-            bool again = header_has(header, (int)f);
+            bool again = header_has(header, (int)f) && fields[f].kind != HEADER_LEFT;
             RETURN_IF_ERROR(take(&fields[f], context, header, error));
             header->given |= (uint64_t)1 << f;
             return again ? header_fail(header, "stands twice: take one out", error) : STATUS_OK;
         }
     }
+    text_append(header->unknown, sizeof header->unknown, ", %.40s", header->key);
     return STATUS_OK;
+}
+
+void header_note_unknown(const struct text_header *header, struct image *image)
+{
+    if (header->unknown[0] != '\0') {
+        image_note(image, "fields that are not known, left out: %s", header->unknown + 2);
+    }
 }
 
 enum status header_sizes(const double size[3], double components, bool colour,
@@ -277,6 +286,9 @@ static const struct header_field fields[] = {
     {"BinaryData", HEADER_WORD, AT(is_binary), .words = FLAG},
     {"HeaderSize", HEADER_INTEGER, AT(layout.skip_bytes), -1, HEADER_SKIP},
     {"DistanceUnits", HEADER_WORD, AT(word), .words = "mm|?"},
+    {"ObjectSubType|TransformType|Name|ID|ParentID|Color|AcquisitionDate|CenterOfRotation|"
+     "AnatomicalOrientation|CompressedDataSize|Modality|SequenceID|ElementMin|ElementMax|ElementNBits",
+     HEADER_LEFT},
 };
 
 bool metaimage_begins(const unsigned char bytes[4])
@@ -312,6 +324,7 @@ static enum status place(const struct metaimage *meta, const struct text_header 
     if (!header_has(header, ORIGIN)) {
         image_note(image, "has no Offset: the first voxel lies at 0");
     }
+    header_note_unknown(header, image);
     image->intent = meta->channels > 1 ? IMAGE_INTENT_VECTOR : 0;
     image->unit = 1e-3;
     image->space = IMAGE_SPACE_SCANNER;

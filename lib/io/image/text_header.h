@@ -14,9 +14,10 @@ struct text_header {
     const int64_t *dimension; /* of the image, as the header gives it; 0: not yet */
     char *key;                /* of the field read last; NULL: the header has ended */
     char *value;
-    bool is_pair;   /* it is KEY:=VALUE */
-    bool cut;       /* the file has ended without an empty line */
-    uint64_t given; /* bit f: field f of the table of header_set was there */
+    bool is_pair;      /* it is KEY:=VALUE */
+    bool cut;          /* the file has ended without an empty line */
+    uint64_t given;    /* bit f: field f of the table of header_set was there */
+    char unknown[200]; /* keys that are not in it, ", " before each */
 };
 
 /* Read a line into header->line, without its end and trailing blanks. STATUS_INPUT for a NUL. */
@@ -28,7 +29,8 @@ MUST_CHECK enum status header_next(struct text_header *header, struct error *err
 /* The keys of a field, A|B, and what takes its value: a function, NULL where only whether it is there counts;
  * or a place in the context: of a whole number (int64_t) from least to most, of numbers (double), one for
  * each dimension or pair of these; of an image_layout, for the type of the values or their file; of the
- * number (int) of one of some words, A|B each; of a pointer to the image, which it describes. */
+ * number (int) of one of some words, A|B each; of a pointer to the image, which it describes.
+ * HEADER_LEFT: it is known, and means nothing here. */
 struct header_field {
     const char *keys;
     enum {
@@ -39,7 +41,8 @@ struct header_field {
         HEADER_TYPE,
         HEADER_FILE,
         HEADER_WORD,
-        HEADER_TEXT
+        HEADER_TEXT,
+        HEADER_LEFT
     } kind;
     size_t at; /* offset in the context */
     int64_t least, most;
@@ -50,10 +53,13 @@ struct header_field {
 /* Most bytes that may be skipped. */
 #define HEADER_SKIP ((int64_t)1 << 50)
 
-/* Take the value of the field read last, if it is in the table, and note that it is there; the table has at
- * most 64 fields. STATUS_INPUT for one that stands twice. */
+/* Take the value of the field read last, and note that it is there; the table has at most 64 fields.
+ * STATUS_INPUT for one that stands twice. */
 MUST_CHECK enum status header_set(struct text_header *header, const struct header_field *fields, size_t count,
                                   void *context, struct error *error);
+
+/* Note in the image which keys were not in the table. */
+void header_note_unknown(const struct text_header *header, struct image *image);
 
 /* Whether field f of the table was there. */
 static inline bool header_has(const struct text_header *header, int f)
