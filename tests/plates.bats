@@ -130,16 +130,11 @@ crushed() {
 }
 
 @test "a block pressed between planes on which it slides wrinkles, which is told at the same load with any frames" {
-    for frames in 1 5 10; do
+    for frames in 1 5 10; do # unstable from a stretch of .64 to .62 on; what the wrinkles become, the way decides
         { block quasi-static | sed 's/0.45/0.49/'
-            printf '[displacement planes]\nfacets = xmin, ymin\nnormal = 0\n[displacement top]\nfacets = ymax\nnormal = -0.05\n[output]\nframes = %s\n' $frames; } > slide.scene
-        # The homogeneous state is exact, and unstable from a stretch of .64 to .62 on. What the wrinkles become, the way decides.
-        run --separate-stderr mtled -o u.dat slide.scene block.mts
-        if [ "$status" -eq 1 ]; then
-            [[ $stderr == *'the body folds from 0.'[78]* ]]
-        else
-            [[ $stderr =~ 'at 0.7'([0-9]*)' of the load the body leaves a state near equilibrium' && 0.7${BASH_REMATCH[1]} < 0.77 ]]
-        fi
+            printf '[displacement planes]\nfacets = xmin, ymin\nnormal = 0\n[displacement top]\nfacets = ymax\nnormal = -0.05\n[output]\nfolds = allowed\nframes = %s\n' $frames; } > slide.scene
+        run -0 --separate-stderr mtled -o u.dat slide.scene block.mts
+        [[ $stderr =~ ' 0.7'[0-9]*' of the load' ]]
     done
     # Up to the stretch at which a plane side creases, .65, that is homogeneous: in closed form 215.611 N/m at .7, to 1e-6 in a run to that.
     sed 's/-0.05/-0.03/; s/frames = 10/reactions = yes\n[solver]\ntolerance = 1e-6/' slide.scene > slide30.scene
@@ -182,8 +177,7 @@ buckled() {
 @test "a body that buckles comes to a state that is stable, and a note says from which load on; where it cannot leave the unstable one, that is reported" {
     # Homogeneous states are exact. The free edges become unstable between stretches of .51 and .5, with 6 nodes a side of .53 and .51.
     for case in '5 0.51' '5 0.497' '6 0.515'; do
-        read -r n stretch <<< "$case"
-        buckled "$n" "$stretch" 1e-6 'energy = yes'
+        read -r n stretch <<< "$case" && buckled "$n" "$stretch" 1e-6 'energy = yes'
         run -0 --separate-stderr mtled -o u.dat buckled.scene cube.mts
         grep -c ' load the body leaves a state near equilibrium, most of all at (' <<< "$stderr" >> notes || [ -z "$stderr" ]
         echo "$case $(rows energy u.dat | awk '{ print $1 }')" >> energies
@@ -207,8 +201,7 @@ Point(1) = {0, 8 - R, 0}; Point(2) = {-50, 0, 0}; Point(3) = {50, 0, 0}; Point(4
 Circle(1) = {3, 1, 2}; Line(2) = {2, 5}; Circle(3) = {5, 1, 4}; Line(4) = {4, 3}; Curve Loop(1) = {1, 2, 3, 4}; Plane Surface(1) = {1}; Mesh.MeshSizeMax = 1.5;
 Physical Surface("body") = {1}; Physical Curve("ends") = {2, 4}; Physical Curve("top") = {3};
 END
-    gmsh -v 1 -2 arch.geo -o arch.msh
-    nodes -u mm arch.msh 2> note | shapefn > arch.mts 2>> note
+    gmsh -v 1 -2 arch.geo -o arch.msh && nodes -u mm arch.msh 2> note | shapefn > arch.mts 2>> note
     for load in 2.8 3 3.5 8; do
         { block quasi-static | sed 's/^E = .*/E = 30000/'
             printf '[displacement ends]\nfacets = ends\ncomponents = 0, 0\n[traction top]\nfacets = top\ncomponents = 0, -%s\n' $load; } > arch.scene
@@ -216,9 +209,8 @@ END
         [ -z "$stderr" ] || echo "$stderr" >> told
         mts print u u.dat | awk '$2 < low { low = $2 } END { print low }' >> deflections
     done
-    [ "$(grep -c 'the body leaves a state near equilibrium' told)" = 3 ] && [ "$(wc -l < told)" -eq 3 ]
-    # The limit is some 2.95 Pa, .85 of 3.5 and .37 of 8: of the smooth curve at .71 and .44 of the load.
-    grep -q 'at 0.7[0-9]* of the load' told && grep -q 'at 0.4[0-9]* of the load' told
+    [ "$(grep -c 'the body leaves a state near equilibrium' told)$(wc -l < told)" = 33 ]
+    grep -q 'at 0.7[0-9]* of the load' told && grep -q 'at 0.4[0-9]* of the load' told # 2.95 of 3.5 and 8 Pa, by a smooth curve
     awk '{ low[NR] = $1 } END { exit !(low[1] > -0.0025 && low[2] < -0.013 && low[4] < low[3] && low[3] < low[2]) }' deflections
 }
 
@@ -242,8 +234,7 @@ bows() {
 # bats test_tags=thorough
 @test "a round rod that has buckled turns about its axis by short steps until it rests" {
     printf '%s\n' 'SetFactory("OpenCASCADE");' 'Cylinder(1) = {0, 0, 0, 100, 0, 0, 2};' 'Mesh.MeshSizeMax = 1.6;' > round.geo
-    gmsh -3 -v 1 -nt 1 round.geo -o round.msh > note
-    nodes -u mm round.msh 2> note | tag -f xmin=low:x,0.1% -f xmax=high:x,0.1% 2> note | shapefn > round.mts 2>> note
+    gmsh -3 -v 1 -nt 1 round.geo -o round.msh > note && nodes -u mm round.msh 2> note | tag -f xmin=low:x,0.1% -f xmax=high:x,0.1% 2> note | shapefn > round.mts 2>> note
     { block quasi-static | sed 's/dim = 2/dim = 3/; s/0.45/0.49/'
         printf '[displacement low]\nfacets = xmin\ncomponents = 0, 0, 0\n[displacement high]\nfacets = xmax\ncomponents = -0.012, 0, 0\n[output]\nreactions = yes\n'; } > round.scene
     run -0 --separate-stderr mtled -o u.dat round.scene round.mts

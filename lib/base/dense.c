@@ -54,8 +54,7 @@ static bool factorise_block(int64_t n, int64_t k, int64_t last, double *matrix)
  * entry is summed in the order of the columns, as without panels. */
 static void reduce(int64_t n, int64_t k, int64_t last, double *matrix)
 {
-    int threads = chunks_of((n - last) * (n - last), ENTRIES_FOR_THREAD).threads;
-#pragma omp parallel num_threads(threads)
+#pragma omp parallel num_threads(chunks_of((n - last) * (n - last), ENTRIES_FOR_THREAD).threads)
     {
 #pragma omp for schedule(static)
         for (int64_t i = last; i < n; i++) {

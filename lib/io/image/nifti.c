@@ -204,7 +204,7 @@ static enum status nifti_decode(const unsigned char *bytes, int version, bool sw
     char magic[4];
     memcpy(magic, bytes + magic_offset[version - 1], sizeof magic);
     *header = (struct nifti){.version = version, .swapped = swapped, .pair = magic[1] == 'i'};
-    magic[1] = header->pair ? '+' : magic[1];
+    magic[1] = (char)(header->pair ? '+' : magic[1]);
     if (memcmp(magic, version == 1 ? magic1 : magic2, sizeof magic) != 0) {
         return fail(error, STATUS_INPUT,
                     version == 1 ? "is an ANALYZE 7.5 header, which knows no orientation: convert it to NIfTI"

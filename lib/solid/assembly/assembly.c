@@ -86,7 +86,7 @@ static enum status build_body(const struct assembly *input, struct solid_system 
     if (!input->pointwise_volume) {
         RETURN_IF_ERROR(list_vertices(input, &vertex, &coordinate, error));
     }
-    bool any_edge = at_edge != NULL && memchr(at_edge, true, (size_t)input->cells.node_count) != NULL;
+    bool any_edge = at_edge != NULL && memchr(at_edge, 1, (size_t)input->cells.node_count) != NULL;
     struct smoothed_cells_input smoothed = {.x = input->cells.x,
                                             .cell_node = input->cells.node,
                                             .faces = &input->faces,
