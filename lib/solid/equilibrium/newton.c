@@ -133,7 +133,7 @@ static enum status begin(struct newton *n, struct error *error)
     n->load.next = n->load.most;
     n->load.hold = statics_load_to_hold(n->options, 0);
     n->friction.rests = true;
-    n->path.reach = n->verdict.pressures_lack = INFINITY;
+    n->path.reach = n->path.most = n->verdict.pressures_lack = INFINITY;
     return measure(n, error);
 }
 

@@ -37,7 +37,7 @@ void newton_leave_path(struct newton *n, int64_t node)
         stability->left_load = statics_load_share(n->system, n->load.now);
         stability->left_node = node;
     }
-    n->path.reach = INFINITY;
+    n->path.reach = n->path.most = INFINITY;
 }
 
 /* Go back to the state before the increment. */
@@ -49,7 +49,7 @@ static void go_back(struct newton *n)
     newton_set_load(n, n->path.from, n->path.from);
     (void)newton_evaluate(n, n->u, &n->at_u);
     system_accept(n->system);
-    n->load.next = shorter * n->load.last;
+    n->load.next = n->path.most = shorter * n->load.last;
     n->load.waits = true;
     n->progress.error = INFINITY;
     n->progress.step = n->report->steps;

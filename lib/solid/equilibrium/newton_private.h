@@ -84,6 +84,7 @@ struct newton_path {
     double *u, reach; /* that state; m, INFINITY: anywhere */
     double from;      /* the load before */
     bool returned;    /* to the state before, where u is */
+    double most;      /* span of an increment since the first jump; INFINITY: any */
 };
 
 /* Lengths, m. */

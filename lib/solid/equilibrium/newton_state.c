@@ -65,6 +65,7 @@ enum status newton_visit(void *run, const struct state *state, struct error *err
         {"best_error", STATE_NUMBERS, &n->progress.error, 1},
         {"path", STATE_NUMBERS, n->path.u, n->size},
         {"reach", STATE_NUMBERS, &n->path.reach, 1},
+        {"most", STATE_NUMBERS, &n->path.most, 1},
         {"from", STATE_NUMBERS, &n->path.from, 1},
         {"returned", STATE_FLAGS, &n->path.returned, 1},
         {"best_step", STATE_COUNTS, &n->progress.step, 1},

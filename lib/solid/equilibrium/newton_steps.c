@@ -195,8 +195,8 @@ bool newton_take_increment(struct newton *n, double from, double to)
            (size_t)n->system->curve_count * sizeof *n->load.last_change);
     memcpy(n->load.move, n->step.move, (size_t)n->size * sizeof *n->load.move);
     take_step(n);
-    n->load.next =
-        fmin(n->load.most, part < 1.0 ? fmax(2.0 * n->load.last, shorter * span) : 2.0 * n->load.next);
+    n->load.next = fmin(fmin(n->load.most, n->path.most),
+                        part < 1.0 ? fmax(2.0 * n->load.last, shorter * span) : 2.0 * n->load.next);
     n->report->loading_steps++;
     n->load.corrections = n->watch.steps = 0;
     n->watch.above = 0.0;
