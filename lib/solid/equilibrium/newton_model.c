@@ -238,12 +238,28 @@ static double lower(struct newton *n, double down, double most)
     return way;
 }
 
-bool newton_solve_model(struct newton *n, double share, double radius)
+/* Lower the model along the last increment's step. */
+static void continue_last(struct newton *n, double most)
+{
+    memcpy(n->cg.search, n->load.move, (size_t)n->size * sizeof *n->cg.search);
+    constraint_project(&n->preconditioner.constraint, NULL, n->cg.search);
+    double down = vector_dot(n->size, n->cg.search, n->model.smooth) +
+                  vector_dot(n->size, n->cg.search, n->model.contact);
+    if (down > 0.0) {
+        newton_multiply(n, n->cg.search, n->cg.product);
+        (void)lower(n, down, most);
+    }
+}
+
+bool newton_solve_model(struct newton *n, double of_last, double share, double radius)
 {
     double now = 0.0, mark = 0.0;
     int augmentations = n->load.corrections < MOST_AUGMENTATIONS || n->verdict.gives_way ? MOST_INNER : 0;
     struct lanczos lanczos = {0};
     begin_model(n);
+    if (of_last > 0.0) {
+        continue_last(n, of_last);
+    }
     double length = newton_longest(n, n->step.move, NULL);
     double none = n->report->move <= n->scale.round_off ? n->scale.round_off : DBL_EPSILON * n->scale.body;
     for (int k = 0; k < MOST_ITERATIONS; k++) {

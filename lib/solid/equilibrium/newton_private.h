@@ -35,8 +35,7 @@ struct newton_load {
     double next, most;     /* the span of the next increment, and the largest, see newton_span; */
     double hold;           /* where the next equilibrium is reported */
     double last, *move;    /* the span of the last increment, and its change of u; 0: none yet */
-    double *factor_change; /* of the load curves; */
-    double *last_change;   /* in the last increment */
+    double *factor_change; /* of the load curves */
     bool waits;            /* until u is almost in equilibrium */
     int64_t corrections;   /* since the last increment */
     int64_t frames;        /* equilibria reported so far */
@@ -174,10 +173,11 @@ void newton_multiply(struct newton *n, const double *move, double *product);
 struct deformation newton_evaluate(struct newton *n, const double *u, struct newton_forces *forces);
 void newton_touch(struct newton *n, const double *u, struct newton_forces *forces);
 
-/* Lower the model at u, from n->step.move, until the norm of its gradient is below `share` of what it was.
- * False where the step reaches the radius at a node before, or where a body that friction alone holds has not
- * come to rest, as the pressures have not settled. n->step.square: that norm, squared. */
-bool newton_solve_model(struct newton *n, double share, double radius);
+/* Lower the model at u, from n->step.move, along the last increment, by `of_last` times it at most, and then
+ * until the norm of its gradient is below `share` of what it was. False where the step reaches the radius at
+ * a node before, or where a body that friction alone holds has not come to rest, as the pressures have not
+ * settled. n->step.square: that norm, squared. */
+bool newton_solve_model(struct newton *n, double of_last, double share, double radius);
 
 /* search . K search at u, with the stiffness of all but the contacts. */
 double newton_curvature(struct newton *n);

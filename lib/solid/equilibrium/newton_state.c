@@ -16,7 +16,6 @@ enum status newton_allocate(struct newton *n, struct error *error)
         RETURN_IF_ERROR(NEW_ARRAY(vectors[i], n->size, error));
     }
     RETURN_IF_ERROR(newton_keep_directions(n, newton_usual_directions(n), error));
-    RETURN_IF_ERROR(NEW_ARRAY(&n->load.last_change, n->system->curve_count, error));
     return NEW_ARRAY(&n->load.factor_change, n->system->curve_count, error);
 }
 
@@ -24,8 +23,7 @@ void newton_release(struct newton *n)
 {
     FREE_ALL(n->at_u.smooth, n->at_u.contact, n->at_trial.smooth, n->at_trial.contact, n->model.smooth,
              n->model.contact, n->trial, n->step.move, n->cg.search, n->cg.product, n->cg.scaled,
-             n->load.move, n->watch.start, n->path.u, n->progress.u, n->load.factor_change,
-             n->load.last_change);
+             n->load.move, n->watch.start, n->path.u, n->progress.u, n->load.factor_change);
     newton_free_directions(n);
     preconditioner_free(&n->preconditioner);
 }
@@ -38,8 +36,7 @@ enum status newton_visit(void *run, const struct state *state, struct error *err
     const struct state_value values[] = {
         {"u", STATE_NUMBERS, n->u, n->size},
         {"last", STATE_NUMBERS, n->load.move, n->size},
-        {"last_change", STATE_NUMBERS, n->load.last_change, n->system->curve_count},
-        {"last_span", STATE_NUMBERS, &n->load.last, 1},
+        {"last_change", STATE_NUMBERS, &n->load.last, 1},
         {"load", STATE_NUMBERS, &n->load.now, 1},
         {"load_change", STATE_NUMBERS, &n->load.next, 1},
         {"radius", STATE_NUMBERS, &n->step.radius, 1},

@@ -129,24 +129,11 @@ double newton_load_after(const struct newton *n, double from, double span)
     return high;
 }
 
-/* The change of the load by that of the last increment, as far as it goes the same way; 0: there was none. */
-static double ratio_to_last(const struct newton *n)
-{
-    double both = 0.0, last2 = 0.0;
-    for (int64_t c = 0; c < n->system->curve_count; c++) {
-        both += n->load.factor_change[c] * n->load.last_change[c];
-        last2 += n->load.last_change[c] * n->load.last_change[c];
-    }
-    return last2 > 0.0 ? both / last2 : 0.0;
-}
-
 bool newton_begin_increment(struct newton *n, double from, double to)
 {
+    double span = newton_span(n, from, to);
     newton_set_load(n, from, to);
-    double ratio = ratio_to_last(n);
-    for (int64_t i = 0; i < n->size; i++) {
-        n->step.move[i] = ratio * n->load.move[i];
-    }
+    memset(n->step.move, 0, (size_t)n->size * sizeof *n->step.move);
     meet_conditions(n);
     system_predict_friction(n->system, newton_held_by_friction(n));
     if (system_acts_outside(n->system)) {
@@ -158,7 +145,9 @@ bool newton_begin_increment(struct newton *n, double from, double to)
     if (n->friction.slides) {
         preconditioner_follow(&n->preconditioner, n->system);
     }
-    bool whole = newton_solve_model(n, n->load.last > 0.0 ? left : left_at_first, far * n->scale.body);
+    bool continues = n->load.last != 0.0;
+    bool whole = newton_solve_model(n, continues ? span / n->load.last : 0.0,
+                                    continues ? left : left_at_first, far * n->scale.body);
     n->step.length = newton_longest(n, n->step.move, NULL);
     take_multipliers(n);
     return whole;
@@ -191,8 +180,6 @@ bool newton_take_increment(struct newton *n, double from, double to)
     }
     n->step.length = part < 1.0 ? INFINITY : n->step.length;
     n->load.last = newton_span(n, from, n->load.now);
-    memcpy(n->load.last_change, n->load.factor_change,
-           (size_t)n->system->curve_count * sizeof *n->load.last_change);
     memcpy(n->load.move, n->step.move, (size_t)n->size * sizeof *n->load.move);
     take_step(n);
     n->load.next = fmin(fmin(n->load.most, n->path.most),
@@ -272,15 +259,15 @@ static double left_of_correction(const struct newton *n)
 static bool solve(struct newton *n)
 {
     memset(n->step.move, 0, (size_t)n->size * sizeof *n->step.move);
-    bool whole =
-        newton_solve_model(n, n->friction.settled ? left_at_first : left_of_correction(n), n->step.radius);
+    bool whole = newton_solve_model(n, 0.0, n->friction.settled ? left_at_first : left_of_correction(n),
+                                    n->step.radius);
     n->friction.settled = false;
     if (whole || n->friction.sticks || !newton_held_by_friction(n)) {
         return whole;
     }
     hold(n, true);
     memset(n->step.move, 0, (size_t)n->size * sizeof *n->step.move);
-    return newton_solve_model(n, left, n->step.radius);
+    return newton_solve_model(n, 0.0, left, n->step.radius);
 }
 
 /* After what was tried: the forces at u, and yields of friction by the pressures there. */
