@@ -100,33 +100,3 @@ void dense_solve(int64_t n, const double *factor, double *x)
         dense_add_row(i, -x[i], factor + i * n, x);
     }
 }
-
-void dense_invert(int64_t n, double *factor)
-{
-    for (int64_t i = 0; i < n; i++) { /* L^-1, in the place of L */
-        double *row = factor + i * n;
-        for (int64_t l = 0; l < i; l++) {
-            double entry = row[l];
-            row[l] = 0.0;
-            dense_add_row(l + 1, entry, factor + l * n, row);
-        }
-        for (int64_t k = 0; k < i; k++) {
-            row[k] = -row[k] / row[i];
-        }
-        row[i] = 1.0 / row[i];
-    }
-    for (int64_t l = 0; l < n; l++) { /* L^-T L^-1, in the upper triangle */
-        const double *row = factor + l * n;
-        double last = row[l];
-        for (int64_t i = 0; i < l; i++) {
-            dense_add_row(l - i, row[i], row + i, factor + i * n + i);
-            factor[i * n + l] = row[i] * last;
-        }
-        factor[l * n + l] = last * last;
-    }
-    for (int64_t i = 0; i < n; i++) {
-        for (int64_t k = 0; k < i; k++) {
-            factor[i * n + k] = factor[k * n + i];
-        }
-    }
-}

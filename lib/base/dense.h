@@ -11,9 +11,6 @@ bool dense_factorise(int64_t n, double *matrix);
 /* x[n] := A^-1 x from the factor. */
 void dense_solve(int64_t n, const double *factor, double *x);
 
-/* The factor becomes A^-1, both triangles. */
-void dense_invert(int64_t n, double *factor);
-
 /* y += a x, for x[count] and y[count]. */
 void dense_add_row(int64_t count, double a, const double *x, double *restrict y);
 

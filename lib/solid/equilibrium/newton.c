@@ -11,8 +11,8 @@
 static const double prescribed_spacings = 1.4;
 /* By the body's size: a step moves no node by more than this. */
 static const double most_of_size = 0.1;
-/* The estimated error at which the load grows on after an increment whose model had no minimum. */
-static const double error_waiting = 0.01;
+/* The estimated error at which the load grows on, and after an increment whose model had no minimum. */
+static const double error_between = 0.2, error_waiting = 0.01;
 static const int64_t usual_most_steps = 100000;
 
 /* Set the preconditioner's mass and measure the coarse fields at u, which was evaluated last. */
@@ -48,7 +48,7 @@ static bool loads(const struct newton *n)
 {
     return n->load.now < n->load.hold && n->watch.steps == 0 &&
            (n->friction.slides ? n->friction.rests
-                               : n->report->error < (n->load.waits ? error_waiting : NEWTON_ERROR_BETWEEN));
+                               : n->report->error < (n->load.waits ? error_waiting : error_between));
 }
 
 /* The next step: an increment of the load, or a correction. The preconditioner is made anew once the products

@@ -29,7 +29,8 @@ static double most_lack(const struct newton *n)
     return fmin(NODAL_PRESSURE_LACK, 10.0 * n->options->tolerance);
 }
 
-bool newton_has_pressures(const struct newton *n)
+/* Whether the pressures are those of u, as far as an equilibrium needs. */
+static bool has_pressures(const struct newton *n)
 {
     return !body_is_limited(&n->system->body) || n->verdict.pressures_lack <= most_lack(n);
 }
@@ -121,7 +122,7 @@ static bool is_found(struct newton *n, bool vain, struct error *error)
         most = fmax(most, hovers ? most_hovering : admitted(n));
     }
     bool rounds = report->error <= (vain ? admitted(n) : 0.0); /* and so do the pressures */
-    bool pressures = rounds || newton_has_pressures(n);
+    bool pressures = rounds || has_pressures(n);
     bool contacts = !contacts_lack(n);
     report->penetration = system_contact_miss(n->system);
     report->penetration_allowed = system_penetration_allowed(report->move);

@@ -10,8 +10,6 @@
 static const double by_increment = 2.0, by_spacing = 0.5;
 /* An increment of this span is short. */
 static const double short_span = 1.0 / 64.0;
-/* The increment after a jump, by the one before. */
-static const double shorter = 0.25;
 
 /* Whether the path is followed until the body leaves it. */
 static bool follows(const struct newton *n)
@@ -44,18 +42,13 @@ void newton_leave_path(struct newton *n, int64_t node)
 static void go_back(struct newton *n)
 {
     add_scaled((int)n->size, -1.0, n->load.move, n->path.u);
-    memcpy(n->u, n->path.u, (size_t)n->size * sizeof *n->u);
-    n->path.returned = true;
     newton_set_load(n, n->path.from, n->path.from);
-    (void)newton_evaluate(n, n->u, &n->at_u);
-    system_accept(n->system);
-    n->load.next = n->path.most = shorter * n->load.last;
+    newton_return(n, n->path.u);
+    n->path.returned = true;
+    n->load.next = n->path.most = NEWTON_SHORTER * n->load.last;
     n->load.waits = true;
     n->progress.error = INFINITY;
     n->progress.step = n->report->steps;
-    n->watch.steps = 0;
-    n->watch.above = 0.0;
-    n->step.length = INFINITY;
     n->verdict.judged = false;
     newton_estimate(n);
 }

@@ -130,12 +130,12 @@ struct newton {
     enum status failure;
 };
 
-/* The estimated error at which the load grows on. */
-#define NEWTON_ERROR_BETWEEN 0.2
-
 /* By the largest Rayleigh quotient, about 1: a smaller one is within the round-off of differences of forces.
  */
 #define NEWTON_LEAST_TOLD 1e-6
+
+/* The step after one that went too far, and the increment after a jump, by that. */
+#define NEWTON_SHORTER 0.25
 
 /* ---- newton_directions.c ---- */
 
@@ -206,6 +206,9 @@ bool newton_begin_increment(struct newton *n, double from, double to);
  * where no increment is small enough. */
 bool newton_take_increment(struct newton *n, double from, double to);
 
+/* Return to a state at this load, and accept it. */
+void newton_return(struct newton *n, const double *u);
+
 /* A Newton step at this load. False where not even a short one is admitted, and u is not in equilibrium. */
 bool newton_correct(struct newton *n);
 
@@ -224,9 +227,6 @@ bool newton_held_by_friction(const struct newton *n);
 /* Let the multipliers of nodal pressures and contacts advance by what was evaluated at u, and take the
  * forces with the new ones. */
 void newton_augment(struct newton *n);
-
-/* Whether the pressures are those of u, as far as an equilibrium needs. */
-bool newton_has_pressures(const struct newton *n);
 
 /* Estimate the error of u, with the residual of the multipliers that were advanced. */
 void newton_estimate(struct newton *n);

@@ -15,8 +15,6 @@ static const double most_growth = 10.0;
 /* Steps in a row that may end where the energy is higher: where a body turns, the step along a straight line
  * stretches it, which the next steps take back (the watchdog of Chamberlain et al. 1982). */
 static const int64_t most_uphill = 3;
-/* The step after one that went too far, by that. */
-static const double shorter = 0.25;
 /* Spacings by which the body leaves a state that is not stable. */
 static const double leaving = 0.05;
 /* By the largest displacement: a shorter step leaves the verdict on stability as it is. */
@@ -183,7 +181,7 @@ bool newton_take_increment(struct newton *n, double from, double to)
     memcpy(n->load.move, n->step.move, (size_t)n->size * sizeof *n->load.move);
     take_step(n);
     n->load.next = fmin(fmin(n->load.most, n->path.most),
-                        part < 1.0 ? fmax(2.0 * n->load.last, shorter * span) : 2.0 * n->load.next);
+                        part < 1.0 ? fmax(2.0 * n->load.last, NEWTON_SHORTER * span) : 2.0 * n->load.next);
     n->report->loading_steps++;
     n->load.corrections = n->watch.steps = 0;
     n->watch.above = 0.0;
@@ -214,14 +212,12 @@ static double rise(struct newton *n)
     return contact - (first + 4.0 * middle + last) / 6.0;
 }
 
-/* Return to where the energy was lowest. */
-static void go_back(struct newton *n)
+void newton_return(struct newton *n, const double *u)
 {
-    memcpy(n->u, n->watch.start, (size_t)n->size * sizeof *n->u);
+    memcpy(n->u, u, (size_t)n->size * sizeof *n->u);
     n->watch.steps = 0;
     n->watch.above = 0.0;
     n->step.length = INFINITY;
-    n->step.radius = shorter * n->watch.length;
     (void)newton_evaluate(n, n->u, &n->at_u);
     system_accept(n->system);
 }
@@ -318,7 +314,8 @@ bool newton_correct(struct newton *n)
         n->step.length > least ? fmax(0.0, n->watch.above + rise(n)) : 0.0; /* else it is round-off */
     n->watch.steps = n->watch.above > 0.0 ? n->watch.steps + 1 : 0;
     if (n->watch.steps > most_uphill && n->watch.length > least) {
-        go_back(n);
+        newton_return(n, n->watch.start); /* where the energy was lowest */
+        n->step.radius = NEWTON_SHORTER * n->watch.length;
         return true;
     }
     take_step(n);
