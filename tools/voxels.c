@@ -66,6 +66,7 @@ static const char usage[] =
 #include "voxels/label_image.h"
 
 #include "approx/cells/parts.h"
+#include "approx/cells/quality.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -163,7 +164,7 @@ static void report_cells(const struct tool *tool, const struct cells *cells, dou
     double least = 180, most = 0;
     for (int64_t c = 0; c < cells->count; c++) {
         double angles[2];
-        simplex_angles(cells, c, angles);
+        (void)cell_quality(cells, c, angles);
         least = fmin(least, angles[0]);
         most = fmax(most, angles[1]);
     }

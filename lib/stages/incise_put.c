@@ -160,7 +160,7 @@ static void report_result(struct cut_body *whole)
         report->face_area += body->group[f] == whole->front ? vector_length(body->dim, normal) : 0.0;
     }
     for (int64_t c = 0; c < body->cell_count; c++) {
-        report->poorest = fmin(report->poorest, cell_quality(&cells, c));
+        report->poorest = fmin(report->poorest, cell_quality(&cells, c, NULL));
     }
 }
 

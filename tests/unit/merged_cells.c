@@ -49,9 +49,9 @@ static bool flatten(const struct cells *cells, int64_t cell, int k, double thick
     }
     for (int64_t c = 0; c < cells->count; c++) {
         bool at_node = c != cell && has_node(cells, c, cells->node[cell * (dim + 1) + k]);
-        worst = at_node ? fmin(worst, cell_quality(cells, c)) : worst;
+        worst = at_node ? fmin(worst, cell_quality(cells, c, NULL)) : worst;
     }
-    if (worst > POOR_QUALITY && cell_quality(cells, cell) > 0.0) {
+    if (worst > POOR_QUALITY && cell_quality(cells, cell, NULL) > 0.0) {
         return true;
     }
     memcpy(place, before, (size_t)dim * sizeof *place);
@@ -187,8 +187,9 @@ TEST_IN_EACH_DIM(groups)
             assert_true(smoothed_cells_group_end(&body, q) <= block->first_point + block->point_count);
             assert_int_equal(body.material[first], body.material[q]);
             if (first != q) {
-                assert_true(cell_quality(&sample.assembly.cells, body.order.points[q]) < POOR_QUALITY);
-                assert_true(cell_quality(&sample.assembly.cells, body.order.points[first]) > POOR_QUALITY);
+                assert_true(cell_quality(&sample.assembly.cells, body.order.points[q], NULL) < POOR_QUALITY);
+                assert_true(cell_quality(&sample.assembly.cells, body.order.points[first], NULL) >
+                            POOR_QUALITY);
                 merged++;
             }
         }

@@ -18,7 +18,7 @@ enum status cell_report_make(const struct cells *cells, double bound, struct cel
     RETURN_IF_ERROR(cells_parts(cells, part, &report->bodies, error));
     NEW_SCRATCH(struct placed, quality, cells->count, error);
     for (int64_t c = 0; c < cells->count; c++) {
-        quality[c] = (struct placed){cell_quality(cells, c), c};
+        quality[c] = (struct placed){cell_quality(cells, c, NULL), c};
         report->volume += cell_volume(cells, c);
     }
     qsort(quality, (size_t)cells->count, sizeof *quality, compare_placed);

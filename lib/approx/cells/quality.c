@@ -10,19 +10,24 @@
 /* With S the sum of the sizes of the faces: in 2D q = 2 r / R, r = 2 A / S, R = a b c / (4 A); in 3D q = 3 r
  * / R, r = 3 V / S, R = sqrt(p (p - a)(p - b)(p - c)) / (6 V), where a, b, c are the products of opposite
  * edges, and p is half their sum. */
-double cell_quality(const struct cells *cells, int64_t cell)
+double cell_quality(const struct cells *cells, int64_t cell, double angles[2])
 {
     int dim = cells->dim;
-    double volume = cell_volume(cells, cell), face[4], sum = 0, product = 1, edges[3], p = 0;
+    double volume = cell_volume(cells, cell), normal[4][3], face[4], sum = 0, product = 1, edges[3], p = 0;
+    double least = 2, most = -2; /* cosines of angles */
     const double *x[4];
     cell_corners(cells, cell, x);
     for (int k = 0; k <= dim; k++) {
         int32_t node[3];
-        double area[3];
         cell_face(cells, cell, k, node);
-        face_area_vector(dim, cells->x, node, area);
-        face[k] = vector_length(dim, area);
+        face_area_vector(dim, cells->x, node, normal[k]);
+        face[k] = vector_length(dim, normal[k]);
         sum += face[k];
+        for (int l = 0; l < k; l++) { /* the angle between faces is 180 degrees less that of their normals */
+            double cosine = -vector_dot(dim, normal[k], normal[l]) / (face[k] * face[l]);
+            least = fmin(least, cosine);
+            most = fmax(most, cosine);
+        }
     }
     for (int k = 0; k < 3; k++) {
         edges[k] = dim == 2 ? face[k]
@@ -32,6 +37,11 @@ double cell_quality(const struct cells *cells, int64_t cell)
     }
     for (int k = 0; k < 3; k++) {
         product *= dim == 2 ? edges[k] : p - edges[k];
+    }
+    if (angles != NULL) {
+        bool has = volume > 0 && least >= -1 && most <= 1;
+        angles[0] = has ? acos(most) * 180 / M_PI : 0;
+        angles[1] = has ? acos(least) * 180 / M_PI : 180;
     }
     double quality = dim == 2 ? volume * fabs(volume) * 16 / (sum * product)
                               : 54 * volume * fabs(volume) / (sum * sqrt(fmax(p * product, 0)));

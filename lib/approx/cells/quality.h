@@ -6,8 +6,10 @@
 
 /* The radius ratio of a cell, dim r / R with the radii r of its inscribed and R of its circumscribed circle
  * or sphere (Liu and Joe, Relationship between tetrahedron shape measures, BIT 34, 1994; gamma in gmsh): 1
- * for the regular simplex, 0 without volume, negative if inverted. Node coordinates need not be finite. */
-double cell_quality(const struct cells *cells, int64_t cell);
+ * for the regular simplex, 0 without volume, negative if inverted. Node coordinates need not be finite.
+ * angles[2], or NULL: the least and the largest angle between faces (2D: edges), degrees; 0 and 180 without
+ * volume or inverted. */
+double cell_quality(const struct cells *cells, int64_t cell, double angles[2]);
 
 /* A cell of lower quality is poor; smoothed cells are then merged with a neighbour
  * (solid/body/merged_cells.h). */

@@ -8,32 +8,6 @@
 #include <math.h>
 #include <string.h>
 
-void simplex_angles(const struct cells *cells, int64_t cell, double angles[2])
-{
-    int dim = cells->dim;
-    double normal[4][3], length[4], least = 2, most = -2;
-    angles[0] = 0;
-    angles[1] = 180;
-    if (!(cell_volume(cells, cell) > 0)) {
-        return;
-    }
-    for (int k = 0; k <= dim; k++) {
-        int32_t face[3];
-        cell_face(cells, cell, k, face);
-        face_area_vector(dim, cells->x, face, normal[k]);
-        length[k] = vector_length(dim, normal[k]);
-        for (int l = 0; l < k; l++) { /* the angle between faces is 180 degrees less that of their normals */
-            double cosine = -vector_dot(dim, normal[k], normal[l]) / (length[k] * length[l]);
-            least = fmin(least, cosine);
-            most = fmax(most, cosine);
-        }
-    }
-    if (least >= -1 && most <= 1) {
-        angles[0] = acos(most) * 180 / M_PI;
-        angles[1] = acos(least) * 180 / M_PI;
-    }
-}
-
 void label_cells_gradient(const struct label_cells *mesh, int64_t cell, int k, double gradient[3])
 {
     int32_t face[3];

@@ -74,7 +74,3 @@ static inline struct cells label_cells_view(const struct label_cells *mesh)
  * voxels that neither lie outside of the cells nor touch such a voxel: gaps and cavities that were filled. */
 MUST_CHECK enum status label_cells_lost(const struct labels *labels, const bool *keep,
                                         const struct label_cells *mesh, int64_t *lost, struct error *error);
-
-/* Least and largest dihedral angle (2D: angle) of a cell, degrees; 0 and 180 for one without volume or
- * inverted. */
-void simplex_angles(const struct cells *cells, int64_t cell, double angles[2]);

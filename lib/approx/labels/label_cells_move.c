@@ -189,11 +189,11 @@ static double score_of(const struct label_body *body, int64_t cell)
     if (!body->wanted[cell] && volume > 0) {
         return INFINITY;
     }
-    simplex_angles(&cells, cell, angles);
+    double quality = cell_quality(&cells, cell, angles);
     if (angles[0] > 0) {
         double of_angles =
             fmin(angles[0] / LABEL_CELLS_LEAST_ANGLE, (180 - angles[1]) / (180 - LABEL_CELLS_MOST_ANGLE));
-        return fmin(of_angles, cell_quality(&cells, cell) / POOR_QUALITY);
+        return fmin(of_angles, quality / POOR_QUALITY);
     }
     const double *x[4];
     cell_corners(&cells, cell, x);

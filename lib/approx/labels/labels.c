@@ -28,6 +28,10 @@ static void read_row(const struct labels *labels, int64_t first, int64_t y, int6
     const int64_t *size = labels->size;
     bool within = y >= 0 && y < size[1] && z >= 0 && z < size[2];
     const uint16_t *line = labels->label + (within ? (z * size[1] + y) * size[0] : 0);
+    if (within && first >= 0 && first + 4 <= size[0]) {
+        memcpy(row, line + first, 4 * sizeof *row);
+        return;
+    }
     for (int i = 0; i < 4; i++) {
         int64_t at = size[0] == 1 ? 0 : first + i;
         row[i] = within && at >= 0 && at < size[0] ? line[at] : 0;
@@ -105,6 +109,9 @@ void labels_mix(const struct labels *labels, const double x[], struct label_mix 
     for (int i = 0; i < 4 * rows; i++) {
         uint16_t label = stencil.row[i / 4][i % 4];
         int known = mix->count;
+        if (i > 0 && label == (&stencil.row[0][0])[i - 1]) {
+            continue;
+        }
         while (known > 0 && mix->label[known - 1] != label) {
             known--;
         }

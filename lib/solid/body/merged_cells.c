@@ -55,7 +55,7 @@ enum status merged_cells_find(const struct body_input *input, int64_t *root, str
         partner[c] = c;
         size[c] = 1;
         volume[c] = fmax(0.0, input->weight[c]); /* nan: 0 */
-        poor[c] = cell_quality(&cells, c) < POOR_QUALITY;
+        poor[c] = cell_quality(&cells, c, NULL) < POOR_QUALITY;
     }
     for (int64_t f = 0; f < faces->count; f++) {
         int64_t first = faces->cell[2 * f], second = faces->cell[2 * f + 1];

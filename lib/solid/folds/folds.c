@@ -145,7 +145,7 @@ static bool is_left_out(const struct folds *folds, int64_t cell)
 {
     struct cells now = folds->input.cells;
     now.x = folds->y;
-    return cell_quality(&folds->input.cells, cell) < POOR_QUALITY || cell_volume(&now, cell) <= 0.0;
+    return cell_quality(&folds->input.cells, cell, NULL) < POOR_QUALITY || cell_volume(&now, cell) <= 0.0;
 }
 
 /* Look for cells whose middle is deep in a cell of another body, or else in any cell that they share no node

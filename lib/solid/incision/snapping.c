@@ -147,9 +147,9 @@ static bool move_node(const struct snapping *snapping, int32_t node, const doubl
     memcpy(before, own, size);
     memcpy(to, x, size);
     for (int64_t i = snapping->cell_ptr[node]; i < snapping->cell_ptr[node + 1] && good; i++) {
-        double had = cell_quality(&cells, snapping->cell_idx[i]);
+        double had = cell_quality(&cells, snapping->cell_idx[i], NULL);
         memcpy(own, to, size);
-        double has = cell_quality(&cells, snapping->cell_idx[i]);
+        double has = cell_quality(&cells, snapping->cell_idx[i], NULL);
         memcpy(own, before, size);
         good = has >= fmin(good_quality, good_part * had) && has > 0.0;
     }
