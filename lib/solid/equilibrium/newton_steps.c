@@ -151,11 +151,12 @@ bool newton_begin_increment(struct newton *n, double from, double to)
     return whole;
 }
 
-/* Whether what the trial lacks is less than the step: from a prediction that has next to no residual, any
- * grows. */
+/* Whether what the trial lacks is finite and less than the step: from a prediction that has next to no
+ * residual, any grows. */
 static bool lacks_less(const struct newton *n)
 {
-    return !n->step.collapses && newton_longest(n, n->cg.scaled, NULL) <= n->step.length;
+    return !n->step.collapses && isfinite(vector_dot(n->size, n->cg.scaled, n->cg.scaled)) &&
+           newton_longest(n, n->cg.scaled, NULL) <= n->step.length;
 }
 
 bool newton_take_increment(struct newton *n, double from, double to)

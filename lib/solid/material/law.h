@@ -54,7 +54,7 @@ struct law {
      * isochoric e that is nearest to that of the law: a fifth of the sum of its eigenvalues, halved. NULL: no
      * parameters but the shear modulus. */
     double (*prepare)(const struct law_input *input, double *parameters, struct law_fault *fault);
-    /* W_iso where det F > 0, and P = dW_iso/dF. */
+    /* W_iso where det F > 0, and P = dW_iso/dF; NaN or infinite where the law has none. */
     double (*energy)(const struct material *material, const double F[9]);
     void (*stress)(const struct material *material, const double F[9], double P[9]);
 };
@@ -74,6 +74,7 @@ double law_refuse(struct law_fault *fault, const char *key, const char *what);
 
 /* ---- what laws are made of ---- */
 
+/* mu may be a function of I1', as the slope of a law in I1' alone is (yeoh.c). */
 double neo_hookean_energy(double mu, const double F[9]);
 void neo_hookean_stress(double mu, const double F[9], double P[9]);
 /* c1 (I1' - 3) + c2 (I2' - 3) */
