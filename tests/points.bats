@@ -54,12 +54,12 @@ turned=('.955336489 * x - .295520207 * y - x + .01' '.295520207 * x + .955336489
         text="${turned[0]}, ${turned[1]}"
         [ $dim = 2 ] || text="$text, ${turned[2]}"
         random 8 $dim "$text" > exact.tsv
-        sed 's/$/ 0.0005/' exact.tsv > springs.tsv
-        for kind in exact springs; do
+        sed 's/$/ 0.0005/' exact.tsv > springs.tsv; sed 's/$/ 1e-12/' exact.tsv > stiff.tsv
+        for kind in exact springs stiff; do
             { head_of $dim; printf '[displacement measured]\npoints = %s.tsv\nunit = m\n' $kind; } > run.scene
             mtled run.scene block.mts > u.dat
             below "$(off "${turned[@]}")" 2e-8
-            rows reactions u.dat | awk '{ for (i = 1; i <= NF; i++) if (!($i^2 < 1e-10)) exit 1 }'
+            [ $kind = stiff ] || rows reactions u.dat | awk '{ for (i = 1; i <= NF; i++) if (!($i^2 < 1e-10)) exit 1 }'
             # What interp finds at the points is what was measured.
             interp -f u -p <(cut -d ' ' -f "1-$dim" exact.tsv) -u m u.dat | mts print u - | paste -d ' ' - <(cut -d ' ' -f "$((dim + 1))-" exact.tsv) |
                 awk '{ for (i = 1; i <= NF / 2; i++) { d = $i - $(i + NF / 2); if (!(d^2 < 1e-15)) exit 1 } }'

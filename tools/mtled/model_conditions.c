@@ -208,6 +208,7 @@ enum status model_conditions(struct model *model, struct error *error)
     struct assembly *input = &model->assembly;
     input->in_time = scene->analysis == SCENE_DYNAMIC;
     input->pointwise_volume = scene->solver.pointwise_volume;
+    input->tolerance = scene->solver.tolerance;
     input->node_values = scene->solver.node_values;
     input->direct = scene->solver.direct;
     ADD_EACH(condition, condition, displacement, add_displacement);

@@ -104,7 +104,8 @@ struct assembly {
     int64_t support_count;
     const struct membrane_condition *membranes;
     int64_t membrane_count;
-    bool in_time; /* for dynamics: gravity by the lumped mass */
+    double tolerance; /* of the displacement: what springs of measured points need not resolve */
+    bool in_time;     /* for dynamics: gravity by the lumped mass */
 
     /* Set by assembly_complete. */
     struct faces boundary; /* the faces on the boundary */

@@ -17,6 +17,7 @@ struct point_condition {
     int32_t number;
     double *volume, *shear; /* of each node: volume, m3 (2D: m2), and shear modulus, Pa */
     double energy;          /* e of measured.h, J (2D: J/m) */
+    double least_deviation; /* of a spring: it moves by the tolerance, m */
 };
 
 enum status condition_fail_at(const struct condition *condition, int64_t row, struct error *error,
@@ -95,12 +96,12 @@ static enum status add_point(const struct point_condition *p, int64_t i, struct 
                               p->condition->field_phi + at};
     for (int a = 0; a < dim; a++) {
         double direction[3] = {0.0, 0.0, 0.0}, target = p->measured->u[i * dim + a];
-        double deviation = p->measured->deviation[i];
+        double deviation = fmax(p->measured->deviation[i], p->least_deviation);
         direction[a] = 1.0;
         if (isnan(target)) {
             continue;
         }
-        if (!(deviation > 0.0)) {
+        if (!(p->measured->deviation[i] > 0.0)) {
             RETURN_IF_ERROR(constraint_rows_add(&p->system->rows, average.length, average.idx, average.phi,
                                                 direction, target, p->condition->curve, p->number, node,
                                                 error));
@@ -163,6 +164,7 @@ static enum status set_energy(struct point_condition *p, struct error *error)
                     p->condition->where, p->condition->table);
     }
     p->energy = measured_energy(measured, &region);
+    p->least_deviation = sqrt(p->input->tolerance) * region.model_error;
     return STATUS_OK;
 }
 
