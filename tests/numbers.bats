@@ -102,12 +102,12 @@ by_load() {
     paste one small | awk '{ for (k = 1; k <= 2; k++) { d = $k - $(k + 2); s = $k > s ? $k : s; e = d * d > e ? d * d : e } } END { print sqrt(e) / s; exit !(e < 4e-4 * s * s) }'
     by_load 1e-11 > lost
     grep -q 'what acts moves the body by no more than round-off, .* m: displacements and forces are not known$' note
-    by_load 0 > none
-    [ ! -s note ]
+    by_load 0 > none && [ ! -s note ]
     printf '1 0.1\n-1 0.1\n' > lid.tsv
-    { block quasi-static && held_below && printf '[contact lid]\nfacets = ymax\nrigid = lid.tsv\nunit = m\nside = left\ntranslation = 0, -1e-15\ncurve = smooth\n'; } > lid.scene
-    mtled -q -o lid.dat lid.scene table.mts 2> note
-    grep -q 'what acts moves the body by no more than round-off' note
+    for acts in '[contact lid]\nrigid = lid.tsv\nunit = m\nside = left\ntranslation = 0, -1e-15\n' '[displacement lid]\ncomponents = 0, -1e-30\n'; do
+        { block quasi-static && held_below && printf "${acts}facets = ymax\ncurve = smooth\n"; } > lid.scene
+        mtled -q -o lid.dat lid.scene table.mts 2>&1 | grep -q 'what acts moves the body by no more than round-off'
+    done
 }
 
 @test "without frames nothing is written; with -o what there is goes beside the file" {

@@ -81,7 +81,9 @@ void newton_estimate(struct newton *n)
     report->move = fmax(move, n->options->tolerance * n->progress.largest_move);
     double error = newton_longest(n, n->cg.scaled, &report->worst_node) / lowest_of(n);
     bool at_rest = report->move <= n->scale.round_off || !(square > 0.0);
-    report->lost = at_rest && error > DBL_EPSILON * n->scale.body;
+    double way = system_longest_way(n->system);
+    bool minute = way > 0.0 && way <= n->scale.round_off;
+    report->lost = at_rest && (minute || error > DBL_EPSILON * n->scale.body);
     report->error = !isfinite(square) ? INFINITY : at_rest ? 0.0 : error / report->move;
 }
 
