@@ -42,14 +42,10 @@ section() {
 }
 
 # Rows of section $1 of a text stream.
-rows() {
-    awk -v name="$1" '/^# / { on = $2 == name; next } on && NF' "${2:--}"
-}
+rows() { awk -v name="$1" '/^# / { on = $2 == name; next } on && NF' "${2:--}"; }
 
 # A text stream without its provenance.
-bare() {
-    grep -v '^# @' "$@"
-}
+bare() { grep -v '^# @' "$@"; }
 
 # A stream without the last row of section $1, as text.
 shortened() {
@@ -115,9 +111,7 @@ rho = 1000
 END
 }
 
-held_below() {
-    printf '[displacement bottom]\nfacets = ymin\ncomponents = 0, 0\n'
-}
+held_below() { printf '[displacement bottom]\nfacets = ymin\ncomponents = 0, 0\n'; }
 
 # A block held at its bottom, its top pushed down; sections may be appended.
 pressed_block() {
@@ -141,14 +135,10 @@ pressed_cube() {
 }
 
 # Images to test with, and what is in them: see helper/nifti.py.
-nifti() {
-    /usr/bin/python3 "$BATS_TEST_DIRNAME/helper/nifti.py" "$@"
-}
+nifti() { /usr/bin/python3 "$BATS_TEST_DIRNAME/helper/nifti.py" "$@"; }
 
 # with SED-SCRIPT: block.scene edited, as edited.scene.
-with() {
-    sed "$1" block.scene > edited.scene
-}
+with() { sed "$1" block.scene > edited.scene; }
 
 # A square of 100 mm meshed by gmsh, as body.msh, its sides and a corner named.
 square_msh() {

@@ -5,14 +5,10 @@ load common.bash
 setup() { enter_loosely; }
 
 # A block of .1 x .1 x .2 m whose names are taken away, as bare.mts.
-bare_block() {
-    cloud -d 3 -k regular -n 6,6,11 --box 0,0.1,0,0.1,0,0.2 | mts drop 'facets*' > bare.mts
-}
+bare_block() { cloud -d 3 -k regular -n 6,6,11 --box 0,0.1,0,0.1,0,0.2 | mts drop 'facets*' > bare.mts; }
 
 # What -v tells of a group: report KIND NAME, from the file said.
-report() {
-    sed -n "s/^tag: $1 $2: //p" said
-}
+report() { sed -n "s/^tag: $1 $2: //p" said; }
 
 @test "ends, boxes, balls, planes, normals: counts, areas, boxes and mean normals" {
     bare_block

@@ -44,9 +44,7 @@ array() {
 }
 
 # Reads a file as ParaView and as meshio do: tests/helper/vtu.py. A reader that is not installed is a failure that says so.
-vtu() {
-    /usr/bin/python3 "$BATS_TEST_DIRNAME/helper/vtu.py" "$@"
-}
+vtu() { /usr/bin/python3 "$BATS_TEST_DIRNAME/helper/vtu.py" "$@"; }
 
 @test "the regions have their names, whatever they contain, and their numbers" {
     two_triangles | tovtk -t -o out.vtu

@@ -4,14 +4,10 @@ load common.bash
 
 setup() { enter_loosely; }
 
-phantom() {
-    "$BUILD/tests/helper/phantom" "$@"
-}
+phantom() { "$BUILD/tests/helper/phantom" "$@"; }
 
 # names SECTION FILE: the names in its header, a line each
-names() {
-    mts list "$2" | awk -F '\t' -v name="$1" '$1 == name { sub(/.*names=/, "", $5); print $5 }' | tr , '\n'
-}
+names() { mts list "$2" | awk -F '\t' -v name="$1" '$1 == name { sub(/.*names=/, "", $5); print $5 }' | tr , '\n'; }
 
 # said LABEL: "BEFORE AFTER" in ml, of the report in `said`
 said() {

@@ -17,8 +17,10 @@ const char *const weight_names[WEIGHT_COUNT] = {"quartic", "regularised"};
 struct mls mls_default(int dim)
 {
     struct mls mls = {.dim = dim, .basis = BASIS_MODIFIED, .weight = WEIGHT_QUARTIC};
-    for (int k = 0; k < MLS_MAX_SECOND; k++) {
-        mls.mu[k] = MLS_DEFAULT_MU;
+    for (int a = 0, k = 0; a < dim; a++) {
+        for (int b = a; b < dim; b++, k++) {
+            mls.mu[k] = a == b ? MLS_DEFAULT_MU : MLS_DEFAULT_MU / 2.0;
+        }
     }
     return mls;
 }
