@@ -2,6 +2,7 @@
  * node. */
 #pragma once
 
+#include "base/memory.h"
 #include "base/status.h"
 
 #include <stdbool.h>
@@ -68,5 +69,12 @@ MUST_CHECK enum status point_grid_nearest(const struct point_grid *grid, const d
                                           node_accepts *accepts, const void *context,
                                           struct nearest_nodes *nearest, struct error *error);
 
-/* Room for `count` more indices. */
+/* Room for `count` more indices; append one. */
 MUST_CHECK enum status index_list_reserve(struct index_list *list, int64_t count, struct error *error);
+MUST_CHECK static inline enum status index_list_add(struct index_list *list, int32_t index,
+                                                    struct error *error)
+{
+    RETURN_IF_ERROR(GROW_ARRAY(&list->index, list->count + 1, &list->capacity, error));
+    list->index[list->count++] = index;
+    return STATUS_OK;
+}

@@ -10,7 +10,6 @@
 
 #include "approx/cells/cells.h"
 #include "approx/points/point_grid.h"
-#include "base/queue.h"
 
 /* The neighbours among the nodes within their radius: if there are cells, those visible through these; or
  * all. */
@@ -133,7 +132,6 @@ struct edge_paths {
     int32_t from;     /* the node; -1: none yet */
     double searched;  /* shortest paths from it are known up to this length, m; negative: none */
     double *length;   /* node_count: their lengths; infinite: longer */
-    struct queue queue;
 };
 
 /* place[place_count * stride], the first dim of each row, in units of `unit` m. The cells must outlive this.

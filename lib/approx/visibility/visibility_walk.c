@@ -94,13 +94,8 @@ static enum status visit(int32_t cell, struct visibility_work *work, struct erro
     if (cell < 0 || contains(&work->visited, cell)) {
         return STATUS_OK;
     }
-    if (work->visited.count == work->visited.capacity || work->stack.count == work->stack.capacity) {
-        RETURN_IF_ERROR(index_list_reserve(&work->visited, 1, error));
-        RETURN_IF_ERROR(index_list_reserve(&work->stack, 1, error));
-    }
-    work->visited.index[work->visited.count++] = cell;
-    work->stack.index[work->stack.count++] = cell;
-    return STATUS_OK;
+    RETURN_IF_ERROR(index_list_add(&work->visited, cell, error));
+    return index_list_add(&work->stack, cell, error);
 }
 
 static bool has_node(const struct cells *cells, int64_t cell, int32_t node)
@@ -186,7 +181,6 @@ enum status visibility_locate(const struct visibility *visibility, const double 
     work->own.count = 0;
     work->outside = false;
     RETURN_IF_ERROR(point_grid_query(&visibility->grid, x, 1.0, &near, error));
-    RETURN_IF_ERROR(index_list_reserve(&work->own, 1, error));
     for (int64_t i = 0; i < near.count; i++) {
         for (int64_t s = visibility->star_ptr[near.index[i]]; s < visibility->star_ptr[near.index[i] + 1];
              s++) {
@@ -195,14 +189,12 @@ enum status visibility_locate(const struct visibility *visibility, const double 
                 work->own.count = work->outside ? 0 : work->own.count;
                 work->outside = false;
                 nearest = 0.0;
-                if (!contains(&work->own, cell)) {
-                    RETURN_IF_ERROR(index_list_reserve(&work->own, 1, error));
-                    work->own.index[work->own.count++] = cell;
-                }
+                RETURN_IF_ERROR(contains(&work->own, cell) ? STATUS_OK
+                                                           : index_list_add(&work->own, cell, error));
             } else if (nearest > 0.0 && pull_into(&visibility->cells, cell, x, pulled) < nearest) {
                 nearest = pull_into(&visibility->cells, cell, x, work->from);
-                work->own.index[0] = cell;
-                work->own.count = 1;
+                work->own.count = 0;
+                RETURN_IF_ERROR(index_list_add(&work->own, cell, error));
                 work->outside = true;
             }
         }
@@ -253,7 +245,6 @@ void edge_paths_free(struct edge_paths *paths)
 {
     visibility_free(&paths->visibility);
     visibility_work_free(&paths->work);
-    queue_free(&paths->queue);
     FREE_ALL(paths->node, paths->verdict, paths->length);
     *paths = (struct edge_paths){0};
 }
@@ -267,31 +258,31 @@ void edge_paths_begin(struct edge_paths *paths, int32_t from)
     }
 }
 
-/* Shortest paths along edges from paths->from, up to the length `limit` (Dijkstra 1959). */
+/* Shortest paths along edges from paths->from, up to the length `limit`: each node to which a shorter one is
+ * found passes it on (Bellman 1958, Ford 1956). */
 static enum status search(struct edge_paths *paths, double limit, struct error *error)
 {
     const struct visibility *visibility = &paths->visibility;
-    int dim = visibility->cells.dim;
+    struct index_list *ends = &paths->work.stack;
+    const double *x = visibility->cells.x;
+    int dim = visibility->cells.dim, corners = dim + 1;
     for (int64_t n = 0; n < visibility->cells.node_count; n++) {
         paths->length[n] = INFINITY;
     }
     paths->searched = limit;
-    paths->queue.count = 0;
     paths->length[paths->from] = 0.0;
-    RETURN_IF_ERROR(queue_push(&paths->queue, 0.0, paths->from, error));
-    while (paths->queue.count > 0) {
-        struct path_end end = queue_pop(&paths->queue);
-        for (int64_t s = visibility->star_ptr[end.node];
-             end.length <= paths->length[end.node] && s < visibility->star_ptr[end.node + 1]; s++) {
-            for (int k = 0; k <= dim; k++) {
-                int32_t next = visibility->cells.node[(int64_t)visibility->star[s] * (dim + 1) + k];
-                double length =
-                    end.length + vector_distance(dim, visibility->cells.x + (int64_t)end.node * dim,
-                                                 visibility->cells.x + (int64_t)next * dim);
-                if (length < paths->length[next] && length <= limit) {
-                    paths->length[next] = length;
-                    RETURN_IF_ERROR(queue_push(&paths->queue, length, next, error));
-                }
+    ends->count = 0;
+    RETURN_IF_ERROR(index_list_add(ends, paths->from, error));
+    for (int64_t i = 0; i < ends->count; i++) {
+        int64_t end = ends->index[i];
+        for (int64_t s = visibility->star_ptr[end] * corners; s < visibility->star_ptr[end + 1] * corners;
+             s++) {
+            int32_t next =
+                visibility->cells.node[(int64_t)visibility->star[s / corners] * corners + s % corners];
+            double length = paths->length[end] + vector_distance(dim, x + end * dim, x + (int64_t)next * dim);
+            if (length < paths->length[next] && length <= limit) {
+                paths->length[next] = length;
+                RETURN_IF_ERROR(index_list_add(ends, next, error));
             }
         }
     }
