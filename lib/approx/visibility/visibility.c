@@ -75,18 +75,8 @@ static enum status find_bodies(const struct visibility *visibility, int32_t *of_
     return nodes_parts(cells, of_cell, of_node, error);
 }
 
-/* The sector of directions from `from` that x lies in, by the signs of its coordinates there. */
-static int sector_of(int dim, const double *from, const double *x)
-{
-    int sector = 0;
-    for (int a = 0; a < dim; a++) {
-        sector |= (x[a] > from[a]) << a;
-    }
-    return sector;
-}
-
 /* A facet may hide a node from points of its support if the node is beyond the facet, or on it but not a node
- * of it, or of another body (`apart`). Note in which sectors, and from which distance on. */
+ * of it, or of another body (`apart`). Note from which distance on. */
 static void note_facet(struct visibility *visibility, const int32_t *facet, int32_t node, bool apart)
 {
     int dim = visibility->cells.dim;
@@ -107,16 +97,8 @@ static void note_facet(struct visibility *visibility, const int32_t *facet, int3
     if (!apart && (height < -tolerance || (height <= tolerance && beside > 0.0))) {
         return;
     }
-    struct box box = box_of_nodes(dim, x, facet, dim);
-    for (int sector = 0; sector < 1 << dim; sector++) {
-        double *least = &visibility->hidden_from[((int64_t)node << dim) + sector];
-        bool meets = true;
-        for (int a = 0; a < dim; a++) {
-            meets =
-                meets && (sector >> a & 1 ? box.high[a] >= y[a] - tolerance : box.low[a] <= y[a] + tolerance);
-        }
-        *least = apart ? 0.0 : meets ? fmin(*least, fmax(height, beside) - tolerance) : *least;
-    }
+    double *least = &visibility->hidden_from[node];
+    *least = apart ? 0.0 : fmin(*least, fmax(height, beside) - tolerance);
 }
 
 /* Note what a face of a cell, at which sight ends, may hide from points on its side. */
@@ -161,8 +143,8 @@ enum status visibility_build(const struct cells *cells, const double *radius, en
         RETURN_IF_ERROR(NEW_ARRAY(&visibility->node_side, cells->node_count, error));
         RETURN_IF_ERROR(nodes_parts(cells, cell_side, visibility->node_side, error));
     }
-    RETURN_IF_ERROR(NEW_ARRAY(&visibility->hidden_from, cells->node_count << cells->dim, error));
-    for (int64_t i = 0; i < cells->node_count << cells->dim; i++) {
+    RETURN_IF_ERROR(NEW_ARRAY(&visibility->hidden_from, cells->node_count, error));
+    for (int64_t i = 0; i < cells->node_count; i++) {
         visibility->hidden_from[i] = INFINITY;
     }
     for (int64_t s = 0; s < cells->count * corners; s++) {
@@ -283,8 +265,7 @@ static bool may_be_hidden(const struct visibility *visibility, int32_t node, con
 {
     int dim = visibility->cells.dim;
     const double *y = visibility->cells.x + (int64_t)node * dim;
-    return vector_distance(dim, y, x) >=
-           visibility->hidden_from[((int64_t)node << dim) + sector_of(dim, y, x)];
+    return vector_distance(dim, y, x) >= visibility->hidden_from[node];
 }
 
 enum status visibility_filter(const struct visibility *visibility, double widen, int32_t *index,

@@ -31,9 +31,8 @@ struct visibility {
     int32_t *across;          /* cells_across */
     int64_t *star_ptr;        /* node_count + 1: the cells at each node (CSR) */
     int32_t *star;
-    double *hidden_from; /* node_count * 2^dim: distance, m, from which on facets of the boundary or of an
-                            interface may hide the node from a point on their side, for each sector of
-                            directions; infinite: none does */
+    double *hidden_from; /* node_count: distance, m, from which on facets of the boundary or of an interface
+                            may hide the node from a point on their side; infinite: none does */
 };
 
 /* radius[node_count], m; cell_side[count], or NULL. Errors: STATUS_INPUT for cells that share a face with
