@@ -91,7 +91,7 @@ limit_memory() { [[ $BUILD == *san* ]] || echo 'ulimit -v 4000000;'; }
 
 @test "fault 8: duplicate nodes, orphan nodes, tags with gaps" {
     mesh | sed 's/^99 5 5 0/99 1 1 0/; s/^5 2 2 4 1 10 30 7/5 2 2 4 1 10 99 7/' > twin.msh
-    refused "two nodes at one place" 2 "nodes 30 and 99 are at the same place" 'nodes -u mm twin.msh'
+    refused "two nodes at one place" 2 "nodes at the same place, in one body: 1 pairs, the first at (0.001, 0.001) m" 'nodes -u mm twin.msh'
     mesh | sed 's/^99 5/30 5/' > twice.msh
     refused "one tag twice" 2 "node tag 30 stands twice" 'nodes -u mm twice.msh'
     accepted "orphan node, gaps in the tags" 'nodes -u mm square.msh'

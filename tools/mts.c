@@ -118,14 +118,15 @@ static int print_cells(const struct tool *tool, const struct stream *stream)
         printf("cells: %" PRId64 " more of quality below %g\n", report.poor - report.listed, POOR_QUALITY);
     }
     FREED_BY(groups_free) struct groups facets = {0};
+    FREED_BY(names_free) struct names hanging = {0};
     bool parts;
-    char hanging[512];
     if (stream_groups(stream, GROUP_FACETS, false, &facets, &error) != STATUS_OK) {
         facets.count = 0; /* reported, too */
     }
-    tool_check(tool, cell_report_hanging(&cells, facets.count, facets.node, &parts, hanging, &error), &error);
-    if (hanging[0] != '\0') {
-        printf("cells: %s\n", hanging);
+    tool_check(tool, cell_report_hanging(&cells, facets.count, facets.node, &parts, &hanging, &error),
+               &error);
+    for (int64_t i = 0; i < hanging.count; i++) {
+        printf("cells: %s\n", hanging.name[i]);
     }
     if (report.bodies > 1) {
         printf("cells: %d connected bodies\n", report.bodies);

@@ -96,19 +96,19 @@ static void report(const struct tool *tool, const struct cells *cells, bool verb
     }
 }
 
-/* Cells of one body that part at nodes which hang on their facets are an error; different bodies may touch,
- * and faces of slits that have names, not numbers of entities. */
+/* Cells of one body that part, at nodes which hang on their facets or are there twice, are an error;
+ * different bodies may touch, and faces of slits that have names, not numbers of entities. */
 static void check_joined(const struct tool *tool, const struct cells *cells, const struct section *facets)
 {
     bool parts;
-    char said[512];
+    FREED_BY(names_free) struct names said = {0};
     TOOL_TRY(tool, cell_report_hanging(cells, facets != NULL ? facets->rows : 0,
-                                       facets != NULL ? facets->data : NULL, &parts, said, &error));
+                                       facets != NULL ? facets->data : NULL, &parts, &said, &error));
     if (parts) {
-        tool_fail(tool, STATUS_INPUT, "%s", said);
+        tool_fail(tool, STATUS_INPUT, "%s", said.name[0]);
     }
-    if (said[0] != '\0') {
-        tool_note(tool, "%s", said);
+    for (int64_t i = 0; i < said.count; i++) {
+        tool_note(tool, "%s", said.name[i]);
     }
 }
 

@@ -41,24 +41,36 @@ const char *cell_report_describe(const struct cells *cells, const struct placed 
 }
 
 enum status cell_report_hanging(const struct cells *cells, int64_t named_count, const int32_t *named,
-                                bool *parts, char said[512], struct error *error)
+                                bool *parts, struct names *said, struct error *error)
 {
-    struct hanging_nodes joined, apart;
-    said[0] = '\0';
-    RETURN_IF_ERROR(cells_find_hanging(cells, named_count, named, &joined, &apart, error));
-    *parts = joined.count > 0;
-    const struct hanging_nodes *found = *parts ? &joined : &apart;
-    if (found->count > 0) {
-        snprintf(said, 512,
-                 "nodes on a facet of another %s, without being its corners: %jd, the first at %s m: the "
-                 "sides are not joined there: mesh both alike (in gmsh: BooleanFragments, or Coherence, "
-                 "before meshing); %s",
-                 *parts ? "cell" : "body or face of a slit", found->count,
-                 POINT_TEXT(cells->dim, found->place),
-                 *parts ? "the faces of a slit need names (physical groups)"
-                        : "where they are to touch, the scene needs a contact");
+    struct hanging_nodes found;
+    RETURN_IF_ERROR(cells_find_hanging(cells, named_count, named, &found, error));
+    bool joined = found.joined.count > 0;
+    *parts = joined || found.twice.count > 0;
+    if (found.twice.count > 0) {
+        RETURN_IF_ERROR(names_print(
+            said, error,
+            "nodes at the same place, in one body: %jd pairs, the first at %s m: merge them (Coherence "
+            "Mesh), or name the facets of a slit",
+            found.twice.count, POINT_TEXT(cells->dim, found.twice.place)));
     }
-    return STATUS_OK;
+    if (joined || found.apart.count > 0) {
+        RETURN_IF_ERROR(names_print(
+            said, error,
+            "nodes on a facet of another %s, without being its corners: %jd, the first at %s m: the "
+            "sides are not joined there: mesh both alike (in gmsh: BooleanFragments, or Coherence, "
+            "before meshing); %s",
+            joined ? "cell" : "body or face of a slit", joined ? found.joined.count : found.apart.count,
+            POINT_TEXT(cells->dim, joined ? found.joined.place : found.apart.place),
+            joined ? "the faces of a slit need names (physical groups)"
+                   : "where they are to touch, the scene needs a contact"));
+    }
+    return found.touching.count == 0
+               ? STATUS_OK
+               : names_print(said, error,
+                             "nodes at the same place, of different bodies: %jd pairs: the bodies are not "
+                             "joined there (Coherence Mesh in gmsh joins them)",
+                             found.touching.count);
 }
 
 /* This is reported if the bending stiffness is wrong by `bound` along at least `noted_share` of the boundary.

@@ -28,10 +28,10 @@ MUST_CHECK enum status cell_report_make(const struct cells *cells, double bound,
 /* "quality 3.1e-05 at (0.01, 0.02, 0.03) m" of a poor cell. */
 const char *cell_report_describe(const struct cells *cells, const struct placed *poor, char text[128]);
 
-/* Tell nodes that hang on facets of other cells (select.h) into said[512]: "nodes on ...", or "". *parts:
- * whether one body parts there. */
+/* Add sentences on nodes that do not join cells (select.h): "nodes on ..."; *parts: one body parts there, by
+ * the first of them. */
 MUST_CHECK enum status cell_report_hanging(const struct cells *cells, int64_t named_count,
-                                           const int32_t *named, bool *parts, char said[512],
+                                           const int32_t *named, bool *parts, struct names *said,
                                            struct error *error);
 
 /* Note if a tenth of the boundary or more is on parts thin for their cells. Exits with a message on failure.

@@ -196,14 +196,20 @@ static bool is_on_rim(const struct search *search, int64_t facet, int32_t node, 
     return false;
 }
 
+/* Whether a node is on a named facet. */
+static bool is_named(const struct search *search, int32_t node)
+{
+    bool any = false;
+    for (int64_t i = search->face_ptr[node]; i < search->face_ptr[node + 1]; i++) {
+        any = any || search->named[search->face_idx[i]];
+    }
+    return any;
+}
+
 /* Whether a facet is a face of a slit, and the node on another one. */
 static bool is_lip(const struct search *search, int64_t facet, int32_t node, double near)
 {
-    bool other = false;
-    for (int64_t i = search->face_ptr[node]; i < search->face_ptr[node + 1]; i++) {
-        other = other || search->named[search->face_idx[i]];
-    }
-    return other && (search->named[facet] || is_on_rim(search, facet, node, near));
+    return is_named(search, node) && (search->named[facet] || is_on_rim(search, facet, node, near));
 }
 
 /* Whether a node is near the facet as a corner of its cell, or of a facet beside it: of a flat one. */
@@ -263,14 +269,33 @@ static enum status mark_hanging(struct search *search, int64_t facet, int32_t bo
     return STATUS_OK;
 }
 
+/* Add the nodes behind a node at its place. */
+static enum status find_coincident(struct search *search, int32_t node, int32_t body[],
+                                   struct hanging_nodes *found, struct error *error)
+{
+    const double *x = search->cells->x + (int64_t)node * search->cells->dim;
+    search->near.count = 0;
+    RETURN_IF_ERROR(point_grid_query(&search->grid, x, 1.0, &search->near, error));
+    for (int64_t i = 0; i < search->near.count; i++) {
+        int32_t other = search->near.index[i];
+        bool behind = other > node, one_body = set_first(body, node) == set_first(body, other);
+        found->touching.count += behind && !one_body;
+        if (behind && one_body && !is_named(search, node) && !is_named(search, other) &&
+            found->twice.count++ == 0) {
+            memcpy(found->twice.place, x, (size_t)search->cells->dim * sizeof *x);
+        }
+    }
+    return STATUS_OK;
+}
+
 enum status cells_find_hanging(const struct cells *cells, int64_t named_count, const int32_t *named,
-                               struct hanging_nodes *joined, struct hanging_nodes *apart, struct error *error)
+                               struct hanging_nodes *found, struct error *error)
 {
     int dim = cells->dim;
     FREED_BY(faces_free) struct faces boundary = {0};
     FREED_BY(search_free) struct search search = {.cells = cells, .boundary = &boundary};
     struct box box = box_of(dim, cells->node_count, cells->x);
-    *joined = *apart = (struct hanging_nodes){0};
+    *found = (struct hanging_nodes){0};
     RETURN_IF_ERROR(faces_build(cells, true, &boundary, error));
     RETURN_IF_ERROR(lists_by_row(boundary.count, dim, boundary.node, cells->node_count, &search.face_ptr,
                                  &search.face_idx, error));
@@ -287,11 +312,13 @@ enum status cells_find_hanging(const struct cells *cells, int64_t named_count, c
     for (int64_t f = 0; f < boundary.count; f++) {
         RETURN_IF_ERROR(mark_hanging(&search, f, body, mark, error));
     }
-    for (int64_t n = 0; n < cells->node_count; n++) {
-        struct hanging_nodes *of = (mark[n] & JOINED) != 0 ? joined : apart;
-        if (mark[n] != 0 && of->count++ == 0) {
-            memcpy(of->place, cells->x + n * dim, (size_t)dim * sizeof *of->place);
+    for (int32_t n = 0; n < cells->node_count; n++) {
+        bool joined = (mark[n] & JOINED) != 0;
+        if (mark[n] != 0 && (joined ? found->joined.count++ : found->apart.count++) == 0) {
+            memcpy(joined ? found->joined.place : found->apart.place, cells->x + (int64_t)n * dim,
+                   (size_t)dim * sizeof(double));
         }
+        RETURN_IF_ERROR(find_coincident(&search, n, body, found, error));
     }
     return STATUS_OK;
 }

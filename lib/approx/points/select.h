@@ -47,15 +47,19 @@ MUST_CHECK enum status items_near(const struct items *items, const struct items 
  * different fineness meet. The cells are not joined there. */
 
 /* Nodes that hang, and the place of the first one, m. */
+/* Where nodes do not join cells: how often, and the first place. A body are cells that common nodes connect.
+ */
 struct hanging_nodes {
-    int64_t count;
-    double place[3];
+    struct {
+        int64_t count;
+        double place[3];
+    } joined, apart, twice, touching;
 };
 
-/* Find the nodes on the boundary that hang on facets of the boundary. *joined: those on a facet of their own
- * body, to which cells with common nodes connect them; *apart: those on a facet of another body alone, or of
- * another face of a slit: their own facet and the other are among named[named_count * dim]. Errors: as
- * faces_build; STATUS_SYSTEM (memory). */
+/* Find the nodes on the boundary that hang on facets of the boundary, joined: on a facet of their own body;
+ * apart: on a facet of another body alone, or of another face of a slit: their own facet and the other are
+ * among named[named_count * dim]. And the pairs of nodes at one place, to round-off, twice: of one body,
+ * neither on a named facet; touching: of two bodies. Errors: as faces_build; STATUS_SYSTEM (memory). */
 MUST_CHECK enum status cells_find_hanging(const struct cells *cells, int64_t named_count,
-                                          const int32_t *named, struct hanging_nodes *joined,
-                                          struct hanging_nodes *apart, struct error *error);
+                                          const int32_t *named, struct hanging_nodes *found,
+                                          struct error *error);

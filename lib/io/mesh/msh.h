@@ -88,7 +88,6 @@ void msh_free(struct msh *msh);
  * their order; those without a kept cell are dropped. Facets of one entity all over the boundary get no name.
  * A cell in two groups belongs to the one with the lowest tag; a repeated cell counts once; cells in no group
  * are the region 'body' if there is no other region, else 'unnamed'. STATUS_INPUT for no cells, a surface in
- * space, cells without volume or overlapping cells, coincident nodes of one body but on facets with a group,
- * an unknown region, and two node sets with one name. */
+ * space, cells without volume or overlapping cells, an unknown region, and two node sets with one name. */
 MUST_CHECK enum status mesh_build(struct msh *msh, double unit, const char *regions, struct stream *stream,
                                   struct error *error);

@@ -1,11 +1,8 @@
 /* The mesh of a file: its nodes, its cells as simplices, and all of it in a stream. */
 #include "io/mesh/msh_build.h"
 
-#include "base/box.h"
-#include "base/lists.h"
 #include "base/memory.h"
 #include "base/round_off.h"
-#include "base/sets.h"
 #include "base/vector.h"
 
 #include <math.h>
@@ -210,83 +207,6 @@ static enum status build_cells(struct mesh *mesh)
     return STATUS_OK;
 }
 
-/* ---- nodes at one place ---- */
-
-static enum status fail_coincident(const struct mesh *mesh, int32_t a, int32_t b)
-{
-    int64_t tags[2] = {0, 0};
-    for (int64_t n = 0; n < mesh->msh->node_count; n++) {
-        if (mesh->node_of[n] == a || mesh->node_of[n] == b) {
-            tags[mesh->node_of[n] == (a > b ? a : b)] = mesh->msh->nodes[n].tag;
-        }
-    }
-    return fail(mesh->error, STATUS_INPUT,
-                "nodes %jd and %jd are at the same place, in one body: merge them (Coherence Mesh), or name "
-                "the facets of a slit",
-                tags[0], tags[1]);
-}
-
-/* slit[node_count]: whether a node is on a facet that has a group. */
-static void mark_slits(const struct mesh *mesh, bool *slit)
-{
-    const struct msh *msh = mesh->msh;
-    for (int64_t e = 0; e < msh->element_count; e++) {
-        bool is_named = msh->elements[e].group >= 0 && mesh_element_dim(mesh, e) == mesh->dim - 1;
-        for (int k = 0; is_named && k < mesh_corners(mesh, e); k++) {
-            int32_t node = mesh->node_of[msh->node_idx[msh->elements[e].first + k]];
-            if (node >= 0) {
-                slit[node] = true;
-            }
-        }
-    }
-}
-
-/* Two nodes of the mesh within ROUND_OFF of its extent are an error if cells connect them, unless one is on a
- * facet that has a group: of a slit. Of two bodies they are noted. They coincide in any projection:
- * sort them along a direction with which no lattice is aligned, and compare those that are near along it. */
-static enum status check_coincident(struct mesh *mesh)
-{
-    static const double direction[3] = {0.7548776662466927, 0.5698402909980532, 0.3247179572447460};
-    struct box box = box_of(mesh->dim, mesh->node_count, mesh->x);
-    double tolerance = ROUND_OFF * box_side(&box);
-    int64_t touching = 0;
-    NEW_SCRATCH(int32_t, body, mesh->node_count, mesh->error);
-    set_join_cells(mesh->node_count, mesh->cell_count, mesh->dim + 1, mesh->cells, body);
-    NEW_SCRATCH(bool, slit, mesh->node_count, mesh->error);
-    mark_slits(mesh, slit);
-    NEW_SCRATCH(struct placed, order, mesh->node_count, mesh->error);
-    for (int64_t n = 0; n < mesh->node_count; n++) {
-        order[n].item = n;
-        for (int k = 0; k < mesh->dim; k++) {
-            order[n].place += direction[k] * (mesh->x[n * mesh->dim + k] - box.low[k]);
-        }
-    }
-    qsort(order, (size_t)mesh->node_count, sizeof *order, compare_placed);
-    for (int64_t i = 0; i < mesh->node_count; i++) {
-        for (int64_t j = i + 1; j < mesh->node_count && order[j].place - order[i].place <= 2 * tolerance;
-             j++) {
-            int32_t a = (int32_t)order[i].item, b = (int32_t)order[j].item;
-            double farthest = 0;
-            for (int k = 0; k < mesh->dim; k++) {
-                farthest = fmax(farthest, fabs(mesh->x[a * mesh->dim + k] - mesh->x[b * mesh->dim + k]));
-            }
-            if (farthest <= tolerance && set_first(body, a) != set_first(body, b)) {
-                touching++;
-            } else if (farthest <= tolerance && !slit[a] && !slit[b]) {
-                RETURN_IF_ERROR(fail_coincident(mesh, a, b));
-            }
-        }
-    }
-    if (touching > 0) {
-        RETURN_IF_ERROR(mesh_add_note(
-            mesh,
-            "nodes at the same place, of different bodies: %jd pairs: the bodies are not joined "
-            "there (Coherence Mesh in gmsh joins them)",
-            touching));
-    }
-    return STATUS_OK;
-}
-
 /* ---- into a stream ---- */
 
 /* Put the arrays, which the stream takes. */
@@ -342,7 +262,6 @@ enum status mesh_build(struct msh *msh, double unit, const char *regions, struct
     RETURN_IF_ERROR(mesh_pick_regions(&mesh));
     RETURN_IF_ERROR(build_nodes(&mesh));
     RETURN_IF_ERROR(build_cells(&mesh));
-    RETURN_IF_ERROR(check_coincident(&mesh));
     RETURN_IF_ERROR(mesh_build_facets(&mesh));
     return put(&mesh, stream);
 }
