@@ -53,23 +53,9 @@ enum status motion_build(const struct nodal_field *field, bool linear, struct mo
     const double *u = field->values;
     int dim = cells->dim;
     *motion = (struct motion){.cells = *cells, .u = u};
-    RETURN_IF_ERROR(NEW_ARRAY(&motion->shape, cells->count * dim * dim, error));
     RETURN_IF_ERROR(NEW_ARRAY(&motion->across, cells->count * (dim + 1), error));
     RETURN_IF_ERROR(NEW_ARRAY(&motion->moved, cells->node_count * dim, error));
     RETURN_IF_ERROR(cells_across(cells, motion->across, error));
-    for (int64_t c = 0; c < cells->count; c++) {
-        /* The columns of m: the edges of the cell from its first node; in 2D the third one is across. */
-        double m[3][3] = {{0}, {0}, {0, 0, 1}}, inverse[3][3];
-        const int32_t *node = cells->node + c * (dim + 1);
-        for (int ij = 0; ij < dim * dim; ij++) {
-            m[ij / dim][ij % dim] =
-                cells->x[node[ij % dim + 1] * dim + ij / dim] - cells->x[node[0] * dim + ij / dim];
-        }
-        (void)matrix_inverse(m[0], m[1], m[2], inverse);
-        for (int ij = 0; ij < dim * dim; ij++) {
-            motion->shape[c * dim * dim + ij] = inverse[ij / dim][ij % dim];
-        }
-    }
     for (int64_t i = 0; i < cells->node_count * dim; i++) {
         motion->moved[i] = cells->x[i] + u[i];
     }
@@ -82,7 +68,7 @@ enum status motion_build(const struct nodal_field *field, bool linear, struct mo
 
 void motion_free(struct motion *motion)
 {
-    FREE_ALL(motion->gradient, motion->shape, motion->across, motion->moved);
+    FREE_ALL(motion->gradient, motion->across, motion->moved);
     *motion = (struct motion){0};
 }
 
@@ -100,27 +86,37 @@ int64_t motion_folded(const struct motion *motion, int64_t *first)
     return count;
 }
 
-/* N[dim + 1]: the linear shape functions of a cell at X. */
-static inline void shapes(const struct motion *motion, int dim, int64_t cell, const double *X, double *N)
+/* N[dim + 1]: the linear shape functions of a cell at X; slope[dim]: the gradients of N_1 to N_dim, 1/m. */
+static void shapes(const struct motion *motion, int64_t cell, const double *X, double *N, double slope[3][3])
 {
-    const double *origin = motion->cells.x + motion->cells.node[cell * (dim + 1)] * dim;
-    const double *shape = motion->shape + cell * dim * dim;
+    const struct cells *cells = &motion->cells;
+    int dim = cells->dim;
+    const int32_t *node = cells->node + cell * (dim + 1);
+    const double *origin = cells->x + node[0] * dim;
+    /* The columns of m: the edges of the cell from its first node; in 2D the third one is across. */
+    double m[3][3] = {{0}, {0}, {0, 0, 1}};
+    for (int i = 0; i < dim; i++) {
+        for (int j = 0; j < dim; j++) {
+            m[i][j] = cells->x[node[j + 1] * dim + i] - origin[i];
+        }
+    }
+    (void)matrix_inverse(m[0], m[1], m[2], slope);
     N[0] = 1;
     for (int a = 0; a < dim; a++) {
         N[a + 1] = 0;
         for (int i = 0; i < dim; i++) {
-            N[a + 1] += shape[a * dim + i] * (X[i] - origin[i]);
+            N[a + 1] += slope[a][i] * (X[i] - origin[i]);
         }
         N[0] -= N[a + 1];
     }
 }
 
-/* moved = X + u(X), and the deformation gradient F unless NULL. */
-static inline void place(const struct motion *motion, int dim, int64_t cell, const double *X, const double *N,
-                         double *moved, double F[3][3])
+/* moved = X + u(X), and the deformation gradient F, by the shape functions. */
+static void place(const struct motion *motion, int64_t cell, const double *X, const double *N,
+                  double slope[3][3], double *moved, double F[3][3])
 {
+    int dim = motion->cells.dim;
     const int32_t *node = motion->cells.node + cell * (dim + 1);
-    const double *shape = motion->shape + cell * dim * dim;
     double part[4][3], mean[3][3] = {{0}};
     for (int i = 0; i < dim; i++) {
         moved[i] = X[i];
@@ -141,11 +137,11 @@ static inline void place(const struct motion *motion, int dim, int64_t cell, con
         }
         add_scaled(dim, N[a], part[a], moved);
     }
-    for (int i = 0; i < dim && F != NULL; i++) {
+    for (int i = 0; i < dim; i++) {
         for (int j = 0; j < dim; j++) {
             F[i][j] = (i == j) + mean[i][j];
             for (int a = 1; a <= dim; a++) {
-                F[i][j] += shape[(a - 1) * dim + j] * (part[a][i] - part[0][i]);
+                F[i][j] += slope[a - 1][j] * (part[a][i] - part[0][i]);
             }
         }
     }
@@ -153,9 +149,9 @@ static inline void place(const struct motion *motion, int dim, int64_t cell, con
 
 void motion_place(const struct motion *motion, int64_t cell, const double *X, double *moved)
 {
-    double N[4];
-    shapes(motion, motion->cells.dim, cell, X, N);
-    place(motion, motion->cells.dim, cell, X, N, moved, NULL);
+    double N[4], slope[3][3], F[3][3];
+    shapes(motion, cell, X, N, slope);
+    place(motion, cell, X, N, slope, moved, F);
 }
 
 /* The X that linear interpolation in the cell maps to x. */
@@ -174,9 +170,9 @@ static void linear_inverse(const struct motion *motion, int64_t cell, const doub
 
 /* The next cell on the way to X: the one beyond the face with the most negative N; the same at the
  * boundary. */
-static inline int64_t next_cell(const struct motion *motion, int dim, int64_t cell, const double *N)
+static int64_t next_cell(const struct motion *motion, int64_t cell, const double *N)
 {
-    int lowest = 0;
+    int dim = motion->cells.dim, lowest = 0;
     for (int a = 1; a <= dim; a++) {
         lowest = N[a] < N[lowest] ? a : lowest;
     }
@@ -184,22 +180,23 @@ static inline int64_t next_cell(const struct motion *motion, int dim, int64_t ce
     return N[lowest] < -step_out && beyond >= 0 ? beyond : cell;
 }
 
-static inline bool inverse_in(const struct motion *motion, int dim, int64_t cell, const double *x,
-                              double tolerance, double *X, double *residual)
+bool motion_inverse(const struct motion *motion, int64_t cell, const double *x, double tolerance, double *X,
+                    double *residual)
 {
-    double start[3], N[4], at[3], F[3][3] = {{0}}, inverse[3][3], first = 0;
+    int dim = motion->cells.dim;
+    double start[3], N[4], slope[3][3], at[3], F[3][3] = {{0}}, inverse[3][3], first = 0;
     int64_t current = cell;
     linear_inverse(motion, cell, x, X);
     memcpy(start, X, (size_t)dim * sizeof *X);
     F[2][2] = 1.0; /* in 2D */
     for (int step = 0; step < newton_most; step++) {
-        shapes(motion, dim, current, X, N);
-        int64_t next = next_cell(motion, dim, current, N);
+        shapes(motion, current, X, N, slope);
+        int64_t next = next_cell(motion, current, N);
         if (next != current) {
             current = next;
-            shapes(motion, dim, current, X, N);
+            shapes(motion, current, X, N, slope);
         }
-        place(motion, dim, current, X, N, at, F);
+        place(motion, current, X, N, slope, at, F);
         vector_subtract(dim, x, at, at);
         *residual = vector_length(dim, at);
         first = step == 0 ? *residual : first;
@@ -218,11 +215,4 @@ static inline bool inverse_in(const struct motion *motion, int dim, int64_t cell
     memcpy(X, start, (size_t)dim * sizeof *X);
     *residual = first;
     return false;
-}
-
-bool motion_inverse(const struct motion *motion, int64_t cell, const double *x, double tolerance, double *X,
-                    double *residual)
-{
-    return motion->cells.dim == 2 ? inverse_in(motion, 2, cell, x, tolerance, X, residual)
-                                  : inverse_in(motion, 3, cell, x, tolerance, X, residual);
 }

@@ -13,7 +13,6 @@ struct motion {
     struct cells cells;
     const double *u;  /* node_count * dim, m; the caller's */
     double *gradient; /* node_count * dim * dim: du_i/dx_j, or NULL: linear in each cell */
-    double *shape;    /* count * dim * dim: rows grad N_1 .. grad N_dim of each cell, 1/m */
     int32_t *across;  /* cells_across */
     double *moved;    /* node_count * dim: x + u */
 };

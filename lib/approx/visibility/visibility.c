@@ -166,7 +166,7 @@ void visibility_free(struct visibility *visibility)
 
 void visibility_work_free(struct visibility_work *work)
 {
-    FREE_ALL(work->own.index, work->mark, work->stack.index, work->visited.index);
+    FREE_ALL(work->own.index, work->stack.index, work->visited.index);
     *work = (struct visibility_work){0};
 }
 
@@ -200,13 +200,6 @@ enum status visibility_begin(const struct visibility *visibility, const struct v
                              int64_t p, const double *x, bool whole, struct visibility_work *work,
                              struct error *error)
 {
-    if (work->mark == NULL) {
-        RETURN_IF_ERROR(NEW_ARRAY(&work->mark, visibility->cells.node_count, error));
-    }
-    if (++work->serial >= UINT32_MAX / 2) {
-        memset(work->mark, 0, (size_t)visibility->cells.node_count * sizeof *work->mark);
-        work->serial = 1;
-    }
     work->x = x;
     work->outside = false;
     memcpy(work->from, x, (size_t)visibility->cells.dim * sizeof *x);
@@ -247,16 +240,11 @@ static enum status look_around(const struct visibility *visibility, int32_t node
 static enum status look(const struct visibility *visibility, int32_t node, struct visibility_work *work,
                         bool *seen, struct error *error)
 {
-    if (work->mark[node] / 2 == work->serial) {
-        *seen = work->mark[node] % 2 == 1;
-        return STATUS_OK;
-    }
     RETURN_IF_ERROR(
         visibility_walk(visibility, work->from, work->cell, work->cell_count, node, work, seen, error));
     if (!*seen) {
         RETURN_IF_ERROR(look_around(visibility, node, work, seen, error));
     }
-    work->mark[node] = 2 * work->serial + *seen;
     return STATUS_OK;
 }
 

@@ -76,8 +76,6 @@ struct visibility_work {
     const int32_t *cell; /* and the cells that contain it */
     int64_t cell_count;  /* -1: not searched for yet */
     int32_t side;        /* of these cells, the lowest; -1: sight does not end at interfaces */
-    uint32_t serial;     /* of the point */
-    uint32_t *mark;      /* node_count: 2 serial, or 2 serial + 1 for a neighbour, where that is known */
     struct index_list own, stack, visited;
 };
 void visibility_work_free(struct visibility_work *work);
