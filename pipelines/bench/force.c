@@ -38,64 +38,46 @@ struct variant {
     bool averaged, smoothed;
 };
 
-/* What a body of smoothed cells is made of; its edge_ptr is to be freed. */
-static enum status smoothed_cells_input(const struct problem *problem, struct smoothed_cells_input *input,
-                                        int64_t **edge_ptr, struct error *error)
-{
-    const struct cells *cells = &problem->cells;
-    *input = (struct smoothed_cells_input){.x = cells->x,
-                                           .cell_node = cells->node,
-                                           .faces = &problem->faces,
-                                           .node_ptr = problem->node_lists.ptr,
-                                           .node_idx = problem->node_lists.idx,
-                                           .node_phi = problem->node_phi};
-    RETURN_IF_ERROR(problem_edges(problem, edge_ptr, &input->edge_idx, &input->edge_phi, error));
-    input->edge_ptr = *edge_ptr;
-    return STATUS_OK;
-}
-
 /* Each cell's volume belongs to its point, at its centroid; points at the nodes share the body's. */
 static enum status build_body(const struct problem *problem, const struct variant *variant, struct body *body,
                               struct error *error)
 {
     const struct cells *cells = &problem->cells;
-    int dim = cells->dim, corners = dim + 1;
+    int dim = cells->dim;
     int64_t count = variant->smoothed ? cells->count : problem->point_count;
-    SCRATCH int64_t *edge_ptr = NULL;
-    struct smoothed_cells_input smoothed = {0};
+    FREED_BY(shape_rows_free) struct shape_rows edges = {0};
     struct material material = {.model = MATERIAL_NEO_HOOKEAN, .density = 1000.0};
     material_set_moduli(&material, 3000.0, 0.49);
     if (variant->smoothed) {
-        RETURN_IF_ERROR(smoothed_cells_input(problem, &smoothed, &edge_ptr, error));
+        RETURN_IF_ERROR(shape_on_edges(&problem->lists, problem->phi, &problem->faces, &edges, error));
     }
     NEW_SCRATCH(double, weight, count, error);
     NEW_SCRATCH(int32_t, none, count, error);
-    NEW_SCRATCH(double, barycentric, count * corners, error);
+    NEW_SCRATCH(int32_t, cell, count, error);
     NEW_SCRATCH(double, x, count * dim, error);
     for (int64_t q = 0; q < count; q++) {
+        cell[q] = (int32_t)q;
         weight[q] = count == cells->count ? cell_volume(cells, q) : 1e-3 / (double)count;
         if (variant->smoothed) {
             cell_centroid(cells, q, x + q * dim);
         }
     }
-    for (int64_t i = 0; i < count * corners; i++) {
-        barycentric[i] = 1.0 / corners;
-    }
-    struct body_input input = {.dim = dim,
-                               .node_x = cells->x,
-                               .smoothed = variant->smoothed ? &smoothed : NULL,
-                               .node_count = cells->node_count,
+    const struct neighbours rows = {
+        .count = face_row_count(&problem->faces), .ptr = edges.ptr, .idx = edges.idx};
+    struct body_input input = {.cells = *cells,
+                               .faces = variant->smoothed ? &problem->faces : NULL,
                                .point_count = count,
                                .x = variant->smoothed ? x : problem->points,
                                .weight = weight,
-                               .ptr = problem->lists.ptr,
-                               .idx = problem->lists.idx,
+                               .cell = variant->averaged ? cell : NULL,
+                               .lists = variant->smoothed ? &rows : &problem->lists,
+                               .node_lists = &problem->node_lists,
                                .dphi = problem->dphi,
+                               .phi = edges.phi,
+                               .node_phi = problem->node_phi,
                                .materials = &material,
                                .material = none,
-                               .material_count = 1,
-                               .vertex = variant->averaged ? cells->node : NULL,
-                               .barycentric = barycentric};
+                               .material_count = 1};
     return body_build(&input, body, error);
 }
 

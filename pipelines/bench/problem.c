@@ -70,20 +70,6 @@ enum status problem_values(void *context, struct error *error)
     return run_shape(context, false, error);
 }
 
-enum status problem_edges(const struct problem *problem, int64_t **edge_ptr, const int32_t **edge_idx,
-                          const double **edge_phi, struct error *error)
-{
-    const struct faces *faces = &problem->faces;
-    const int64_t *from = problem->lists.ptr + face_boundary_points(faces);
-    RETURN_IF_ERROR(NEW_ARRAY(edge_ptr, faces->edge_count + 1, error));
-    for (int64_t e = 0; e <= faces->edge_count; e++) {
-        (*edge_ptr)[e] = from[e] - from[0];
-    }
-    *edge_idx = problem->lists.idx + from[0];
-    *edge_phi = problem->phi + from[0];
-    return STATUS_OK;
-}
-
 /* A cube (square) of 0.1 m with that many nodes along each axis. The support radius is 2.12 times the
  * spacing: a support holds about 40 nodes in 3D, 14 in 2D. */
 static enum status make_body(struct problem *problem, int dim, int64_t per_axis, double jitter,

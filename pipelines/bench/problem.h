@@ -34,10 +34,6 @@ MUST_CHECK enum status problem_values(void *context, struct error *error);
 /* The lists and values of the field at the nodes. */
 MUST_CHECK enum status problem_nodes(struct problem *problem, struct error *error);
 
-/* The rows of the edges, of points on the faces: edge_ptr[edge_count + 1], to be freed; the first is 0. */
-MUST_CHECK enum status problem_edges(const struct problem *problem, int64_t **edge_ptr,
-                                     const int32_t **edge_idx, const double **edge_phi, struct error *error);
-
 /* Makes the bodies that kernels are timed on, one after the other: with a point in each cell, in 2D and 3D;
  * with points on the faces of smoothed cells (about twelve times the nodes), in 2D and 3D; and cubes of 1e3
  * to 1e6 nodes with points at the nodes, which tell how things grow. A failure ends the program. */

@@ -123,11 +123,9 @@ static void fault_of_smoothing(void)
     struct body body;
     struct setup setup = one_material(MATERIAL_NEO_HOOKEAN, false);
     struct sample *sample = &samples[0];
-    struct smoothed_cells_input smoothed = sample_smoothed(sample);
     int32_t *material = zeros(sample->assembly.point_count, sizeof *material);
-    struct body_input input = sample_input(sample, setup.material, 1, material);
-    input.vertex = NULL;
-    input.smoothed = &smoothed;
+    struct body_input input = sample_input(sample, true, setup.material, 1, material);
+    input.cell = NULL;
     double *edge_phi = stream_find(&sample->stream, "edge.phi")->data,
            *node_phi = stream_find(&sample->stream, "node.phi")->data;
     double *changed = &edge_phi[sample->assembly.lists.ptr[7]], before = *changed;
@@ -145,10 +143,9 @@ static void fault_of_smoothing(void)
     *changed = before;
     struct faces fewer = sample->assembly.faces;
     fewer.count--;
-    smoothed.faces = &fewer;
+    input.faces = &fewer;
     FAILS(body_build(&input, &body, &error), STATUS_INPUT, "lacks a face: run ipoints for smoothed cells");
     body_free(&body);
-    smoothed.faces = &sample->assembly.faces;
 }
 
 TEST(faults)
@@ -156,16 +153,15 @@ TEST(faults)
     struct body body;
     static const struct material material = {.shear_modulus = 1.0, .bulk_modulus = 1.0};
     static const double x[4] = {0.0}, dphi[4] = {0.0};
-    static const int32_t idx[2] = {0, 1}, none[2] = {0};
+    static const int32_t none[2] = {0};
     double weight[2] = {1.0, 1.0};
     int64_t ptr[3] = {0, 2, 2};
-    struct body_input input = {.dim = 2,
-                               .node_count = 2,
+    struct neighbours lists = {.count = 2, .ptr = ptr, .idx = (int32_t[]){0, 1}};
+    struct body_input input = {.cells = {.dim = 2, .node_count = 2, .x = x},
                                .point_count = 2,
                                .x = x,
                                .weight = weight,
-                               .ptr = ptr,
-                               .idx = idx,
+                               .lists = &lists,
                                .dphi = dphi,
                                .materials = &material,
                                .material = none,
@@ -234,9 +230,9 @@ TEST(many_blocks)
         (void)body_force(&body, u, force);
         body_stress(&body, P);
         for (int64_t q = 0; q < sample.assembly.point_count && !by_faces; q++) {
-            for (int64_t k = sample.ptr[q] * 2; k < sample.ptr[q + 1] * 2; k++) {
+            for (int64_t k = sample.lists.ptr[q] * 2; k < sample.lists.ptr[q + 1] * 2; k++) {
                 for (int a = 0; a < 2; a++) {
-                    expected[sample.idx[k / 2] * 2 + a] +=
+                    expected[sample.lists.idx[k / 2] * 2 + a] +=
                         sample.assembly.weight[q] * P[9 * q + 3 * a + k % 2] * sample.dphi[k];
                 }
             }

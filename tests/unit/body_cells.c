@@ -2,6 +2,7 @@
  * volume within the boundary. */
 #include "body_setup.h"
 
+#include "approx/cells/quadrature.h"
 #include "base/vector.h"
 #include "solid/body/stress.h"
 

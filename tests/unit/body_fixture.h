@@ -5,7 +5,6 @@
 #include "cell_table.h"
 #include "tables_fixture.h"
 
-#include "approx/cells/quadrature.h"
 #include "solid/body/smoothed_cells.h"
 
 struct sample {
@@ -16,11 +15,8 @@ struct sample {
     struct assembly assembly; /* in view of the stream; a copy's face_table is not to be used */
     /* Gradients at the integration points; of smoothed cells those that the averages over faces make. */
     struct cell_table of_cells;
-    const int64_t *ptr;
-    const int32_t *idx;
+    struct neighbours lists;
     const double *dphi;
-    int32_t *vertex; /* of the cell of each point, and its barycentric coordinates there */
-    double *barycentric;
 };
 
 static const double sample_size = 0.1;
@@ -43,25 +39,18 @@ static inline struct cloud sample_cloud(int dim, int64_t per_axis)
 /* Of a cloud, which becomes the sample's; factor: support radius by local spacing. */
 static inline struct sample sample_of(int dim, bool smoothed, struct cloud cloud, double factor)
 {
-    struct quadrature_rule rule;
     struct sample sample = {.dim = dim, .smoothed = smoothed, .cloud = cloud};
-    int per_cell = smoothed ? 1 : dim + 1, corners = dim + 1;
     struct assembly *assembly = &sample.assembly;
-    make_tables_of(&sample.cloud, smoothed ? 0 : per_cell, factor, &sample.stream, assembly);
-    GOOD(quadrature_cell_rule(dim, per_cell, &rule, &error));
-    ARRAY(sample.vertex, assembly->point_count * corners);
-    ARRAY(sample.barycentric, assembly->point_count * corners);
-    for (int64_t i = 0; i < assembly->point_count * corners; i++) {
-        sample.vertex[i] = assembly->cells.node[i / corners / per_cell * corners + i % corners];
-        sample.barycentric[i] = rule.barycentric[i % (per_cell * corners)];
-    }
+    make_tables_of(&sample.cloud, smoothed ? 0 : dim + 1, factor, &sample.stream, assembly);
     if (smoothed) {
         const struct cell_sources sources = {&assembly->lists, &assembly->node_lists, assembly->phi,
                                              assembly->node_phi};
         sample.of_cells = cell_table_make(&assembly->cells, &assembly->faces, &sources);
     }
-    sample.ptr = smoothed ? sample.of_cells.ptr : assembly->lists.ptr;
-    sample.idx = smoothed ? sample.of_cells.idx : assembly->lists.idx;
+    sample.lists = smoothed ? (struct neighbours){.count = assembly->point_count,
+                                                  .ptr = sample.of_cells.ptr,
+                                                  .idx = sample.of_cells.idx}
+                            : assembly->lists;
     sample.dphi = smoothed ? sample.of_cells.dphi : assembly->dphi;
     return sample;
 }
@@ -79,45 +68,31 @@ static inline struct sample make_sample(int dim, bool smoothed, int64_t per_axis
 static inline void sample_free(struct sample *sample)
 {
     cell_table_free(&sample->of_cells);
-    free(sample->vertex);
-    free(sample->barycentric);
     stream_free(&sample->stream);
     cloud_free(&sample->cloud);
 }
 
-/* What a body of smoothed cells is made of. */
-static inline struct smoothed_cells_input sample_smoothed(const struct sample *sample)
+/* The body of these materials; material[points]; by_cells: of smoothed cells, else of the gradients. Change
+ * what else is to be different. */
+static inline struct body_input sample_input(const struct sample *sample, bool by_cells,
+                                             const struct material *materials, int64_t material_count,
+                                             const int32_t *material)
 {
     const struct assembly *assembly = &sample->assembly;
-    return (struct smoothed_cells_input){.x = sample->cloud.x,
-                                         .cell_node = assembly->cells.node,
-                                         .faces = &assembly->faces,
-                                         .edge_ptr = assembly->lists.ptr,
-                                         .edge_idx = assembly->lists.idx,
-                                         .edge_phi = assembly->phi,
-                                         .node_ptr = assembly->node_lists.ptr,
-                                         .node_idx = assembly->node_lists.idx,
-                                         .node_phi = assembly->node_phi};
-}
-
-/* The body of these materials; material[points]. Change what else is to be different. */
-static inline struct body_input sample_input(const struct sample *sample, const struct material *materials,
-                                             int64_t material_count, const int32_t *material)
-{
-    return (struct body_input){.dim = sample->dim,
-                               .node_count = sample->cloud.node_count,
-                               .point_count = sample->assembly.point_count,
-                               .node_x = sample->cloud.x,
-                               .x = sample->assembly.x,
-                               .weight = sample->assembly.weight,
-                               .ptr = sample->ptr,
-                               .idx = sample->idx,
+    return (struct body_input){.cells = assembly->cells,
+                               .faces = by_cells ? &assembly->faces : NULL,
+                               .point_count = assembly->point_count,
+                               .x = assembly->x,
+                               .weight = assembly->weight,
+                               .cell = assembly->point_cell,
+                               .lists = by_cells ? &assembly->lists : &sample->lists,
+                               .node_lists = &assembly->node_lists,
                                .dphi = sample->dphi,
+                               .phi = assembly->phi,
+                               .node_phi = assembly->node_phi,
                                .materials = materials,
                                .material = material,
-                               .material_count = material_count,
-                               .vertex = sample->vertex,
-                               .barycentric = sample->barycentric};
+                               .material_count = material_count};
 }
 
 /* Shape functions on the faces of the boundary. */

@@ -141,7 +141,8 @@ static void check_shares(const struct sample *sample, const struct body *body, c
     for (int64_t q = 0; q < body->point_count; q++) {
         whole += body->weight[q];
         for (int64_t s = q * vertices; s < (q + 1) * vertices; s++) {
-            int32_t node = sample->vertex[body->order.points[q] * vertices + s - q * vertices];
+            int64_t cell = sample->assembly.point_cell[body->order.points[q]];
+            int32_t node = sample->assembly.cells.node[cell * vertices + s - q * vertices];
             volume += volumes->share[s];
             assert_true(at_edge[node] == !(volumes->share[s] > 0.0));
         }
@@ -223,20 +224,22 @@ TEST(empty_volumes)
     FREED_BY(body_free) struct body body = {0};
     struct material material[2] = {make_material(MATERIAL_NEO_HOOKEAN, 3000.0),
                                    make_material(MATERIAL_NEO_HOOKEAN, 6000.0)};
-    struct body_input input = {.dim = 2,
-                               .node_count = 4,
+    struct neighbours lists = {.count = 2, .ptr = (int64_t[]){0, 3, 6}, .idx = (int32_t[]){0, 1, 2, 0, 2, 3}};
+    struct body_input input = {.cells = {.dim = 2,
+                                         .node_count = 4,
+                                         .x = (double[]){0, 0, 1, 0, 0, 1, -1, 0},
+                                         .count = 2,
+                                         .node = (int32_t[]){0, 1, 2, 0, 2, 3}},
                                .point_count = 2,
-                               .x = (double[]){0.6, 0.3, 0.3, 0.6},
+                               .x = (double[]){0.5, 0.0, -0.6, 0.0},
                                .weight = (double[]){0.5, 0.5},
-                               .ptr = (int64_t[]){0, 3, 6},
-                               .idx = (int32_t[]){0, 1, 2, 0, 2, 3},
+                               .cell = (int32_t[]){0, 1},
+                               .lists = &lists,
                                .dphi = (double[]){-1, 0, 1, -1, 0, 1, 0, -1, 1, 0, -1, 1},
                                .materials = material,
                                .material = (int32_t[]){0, 1},
                                .material_count = 2,
-                               .group = (int32_t[]){0, 0},
-                               .vertex = (int32_t[]){0, 1, 2, 0, 3, 2},
-                               .barycentric = (double[]){0.5, 0.5, 0.0, 0.4, 0.6, 0.0}};
+                               .group = (int32_t[]){0, 0}};
     double u[8] = {0.0, 0.0, 0.1, 0.0, 0.0, 0.2, 0.0, 0.1}, force[8];
     GOOD(body_build(&input, &body, &error));
     (void)body_force(&body, u, force);
@@ -303,10 +306,10 @@ static void check_inversion(const struct sample *sample, const struct setup *set
         body_gradient(&body, F);
         for (int64_t q = 0; q < sample->assembly.point_count; q++) {
             double G[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-            for (int64_t i = sample->ptr[q]; i < sample->ptr[q + 1]; i++) {
+            for (int64_t i = sample->lists.ptr[q]; i < sample->lists.ptr[q + 1]; i++) {
                 for (int k = 0; k < dim * dim; k++) {
                     G[k / dim * 3 + k % dim] +=
-                        u[(int64_t)sample->idx[i] * dim + k / dim] * sample->dphi[i * dim + k % dim];
+                        u[(int64_t)sample->lists.idx[i] * dim + k / dim] * sample->dphi[i * dim + k % dim];
                 }
             }
             ALL_NEAR(9, F + 9 * q, G, 1e-11);
@@ -320,8 +323,9 @@ static void check_inversion(const struct sample *sample, const struct setup *set
     struct deformation deformation = body_force(&body, u, force);
     assert_true(isnan(deformation.least_jacobian));
     bool touched = false;
-    for (int64_t i = sample->ptr[deformation.point]; i < sample->ptr[deformation.point + 1]; i++) {
-        touched = touched || sample->idx[i] == 3 / dim;
+    for (int64_t i = sample->lists.ptr[deformation.point]; i < sample->lists.ptr[deformation.point + 1];
+         i++) {
+        touched = touched || sample->lists.idx[i] == 3 / dim;
     }
     assert_true(touched || setup->faces); /* faces are worked on in groups: a neighbour may have it first */
 }

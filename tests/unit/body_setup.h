@@ -44,15 +44,14 @@ static inline int32_t material_at(const struct sample *sample, const struct setu
 static inline struct body make_body(const struct sample *sample, const struct setup *setup)
 {
     struct body body;
-    struct smoothed_cells_input smoothed = sample_smoothed(sample);
     SCRATCH int32_t *material = NULL;
     ARRAY(material, sample->assembly.point_count);
     for (int64_t q = 0; q < sample->assembly.point_count; q++) {
         material[q] = material_at(sample, setup, q);
     }
-    struct body_input input = sample_input(sample, setup->material, setup->model_count, material);
-    input.smoothed = setup->faces ? &smoothed : NULL;
-    input.vertex = setup->averaged ? sample->vertex : NULL;
+    struct body_input input =
+        sample_input(sample, setup->faces, setup->material, setup->model_count, material);
+    input.cell = setup->averaged ? input.cell : NULL;
     input.at_edge = setup->at_edge;
     input.group = setup->group;
     GOOD(body_build(&input, &body, &error));

@@ -1,6 +1,7 @@
 /* Boundary averages: sums, linear fields, boundary averages split where the boundary turns, areas, the
  * divergence theorem against the cells' table, and facets that are none. */
 #include "body_fixture.h"
+#include "approx/cells/quadrature.h"
 #include "base/vector.h"
 
 static struct boundary_averages averages_of(const struct sample *sample, struct facet_set set)
@@ -103,9 +104,9 @@ TEST_IN_EACH_DIM(divergence_theorem)
     double *inside = zeros(count, sizeof *inside), *outside = zeros(count, sizeof *outside);
     double largest = 0.0;
     for (int64_t q = 0; q < sample.assembly.point_count; q++) {
-        for (int64_t i = sample.ptr[q]; i < sample.ptr[q + 1]; i++) {
+        for (int64_t i = sample.lists.ptr[q]; i < sample.lists.ptr[q + 1]; i++) {
             for (int c = 0; c < dim; c++) {
-                inside[(int64_t)sample.idx[i] * dim + c] +=
+                inside[(int64_t)sample.lists.idx[i] * dim + c] +=
                     sample.assembly.weight[q] * sample.dphi[i * dim + c];
             }
         }

@@ -49,29 +49,9 @@ static enum status junction_cells(const struct assembly *input, int32_t **part, 
     return STATUS_OK;
 }
 
-/* vertex, coordinate[point_count * (dim + 1)]: the vertices of the cell of each point, and the barycentric
- * coordinates of the point. To be freed. */
-static enum status list_vertices(const struct assembly *input, int32_t **vertex, double **coordinate,
-                                 struct error *error)
-{
-    const struct cells *cells = &input->cells;
-    const int32_t *cell = input->point_cell;
-    int corners = cells->dim + 1;
-    RETURN_IF_ERROR(NEW_ARRAY(vertex, input->point_count * corners, error));
-    RETURN_IF_ERROR(NEW_ARRAY(coordinate, input->point_count * corners, error));
-    for (int64_t q = 0; q < input->point_count; q++) {
-        memcpy(*vertex + q * corners, cells->node + (int64_t)cell[q] * corners,
-               (size_t)corners * sizeof **vertex);
-        cell_barycentric(cells, cell[q], input->x + q * cells->dim, *coordinate + q * corners);
-    }
-    return STATUS_OK;
-}
-
 static enum status build_body(const struct assembly *input, struct solid_system *system, struct error *error)
 {
     const struct material_list *materials = &input->materials;
-    SCRATCH int32_t *vertex = NULL;
-    SCRATCH double *coordinate = NULL;
     SCRATCH bool *at_edge = NULL;
     SCRATCH int32_t *junction = NULL;
     if (input->smoothed && assembly_holds_averages(input)) {
@@ -83,40 +63,27 @@ static enum status build_body(const struct assembly *input, struct solid_system 
         RETURN_IF_ERROR(find_junctions(input, BOUNDARY_JUNCTION_SHARP | BOUNDARY_REENTRANT, input->cells.dim,
                                        &at_edge, error));
     }
-    if (!input->pointwise_volume) {
-        RETURN_IF_ERROR(list_vertices(input, &vertex, &coordinate, error));
-    }
     bool any_edge = at_edge != NULL && memchr(at_edge, 1, (size_t)input->cells.node_count) != NULL;
-    struct smoothed_cells_input smoothed = {.x = input->cells.x,
-                                            .cell_node = input->cells.node,
-                                            .faces = &input->faces,
-                                            .edge_ptr = input->lists.ptr,
-                                            .edge_idx = input->lists.idx,
-                                            .edge_phi = input->phi,
-                                            .node_ptr = input->node_lists.ptr,
-                                            .node_idx = input->node_lists.idx,
-                                            .node_phi = input->node_phi,
-                                            .copied = input->copied,
-                                            .context = input->context};
-    struct body_input body = {.dim = input->cells.dim,
-                              .node_x = input->cells.x,
-                              .node_count = input->cells.node_count,
-                              .point_count = input->point_count,
-                              .x = input->x,
-                              .weight = input->weight,
-                              .ptr = input->smoothed ? NULL : input->lists.ptr,
-                              .idx = input->smoothed ? NULL : input->lists.idx,
-                              .dphi = input->dphi,
-                              .materials = materials->items,
-                              .material = materials->of_point,
-                              .material_count = materials->count,
-                              .group = materials->group,
-                              .vertex = vertex,
-                              .barycentric = coordinate,
-                              .junction = junction,
-                              .at_edge = any_edge ? at_edge : NULL,
-                              .smoothed = input->smoothed ? &smoothed : NULL,
-                              .ranks = input->ranks};
+    const struct body_input body = {.cells = input->cells,
+                                    .faces = input->smoothed ? &input->faces : NULL,
+                                    .point_count = input->point_count,
+                                    .x = input->x,
+                                    .weight = input->weight,
+                                    .cell = input->pointwise_volume ? NULL : input->point_cell,
+                                    .lists = &input->lists,
+                                    .node_lists = &input->node_lists,
+                                    .dphi = input->dphi,
+                                    .phi = input->phi,
+                                    .node_phi = input->node_phi,
+                                    .copied = input->smoothed ? input->copied : NULL,
+                                    .context = input->context,
+                                    .materials = materials->items,
+                                    .material = materials->of_point,
+                                    .material_count = materials->count,
+                                    .group = materials->group,
+                                    .junction = junction,
+                                    .at_edge = any_edge ? at_edge : NULL,
+                                    .ranks = input->ranks};
     return body_build(&body, &system->body, error);
 }
 

@@ -34,27 +34,22 @@ static enum status order_all(const struct body_input *input, struct body *body, 
     SCRATCH double *kept = NULL;
     NEW_SCRATCH(int32_t, model, input->point_count, error);
     RETURN_IF_ERROR(NEW_ARRAY(&body->order.points, input->point_count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&body->order.nodes, input->node_count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&body->order.places, input->node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&body->order.nodes, body->node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&body->order.places, body->node_count, error));
     for (int64_t q = 0; q < input->point_count; q++) {
         model[q] = model_of(input, q);
     }
     RETURN_IF_ERROR(
-        renumber_morton(input->dim, input->point_count, input->x, model, body->order.points, error));
+        renumber_morton(body->dim, input->point_count, input->x, model, body->order.points, error));
     if (body->smoothed) {
         RETURN_IF_ERROR(NEW_ARRAY(&root, input->point_count, error));
         RETURN_IF_ERROR(merged_cells_find(input, root, error));
         RETURN_IF_ERROR(merged_cells_join(input, root, &kept, error));
         RETURN_IF_ERROR(merged_cells_order(root, kept, body, error));
     }
-    for (int64_t n = 0; n < input->node_count; n++) {
-        body->order.nodes[n] = n;
-    }
-    if (input->node_x != NULL) {
-        RETURN_IF_ERROR(
-            renumber_morton(input->dim, input->node_count, input->node_x, NULL, body->order.nodes, error));
-    }
-    for (int64_t n = 0; n < input->node_count; n++) {
+    RETURN_IF_ERROR(
+        renumber_morton(body->dim, body->node_count, input->cells.x, NULL, body->order.nodes, error));
+    for (int64_t n = 0; n < body->node_count; n++) {
         body->order.places[body->order.nodes[n]] = (int32_t)n;
     }
     return STATUS_OK;
@@ -63,7 +58,7 @@ static enum status order_all(const struct body_input *input, struct body *body, 
 /* Per-point data in the body's order. */
 static enum status copy_points(const struct body_input *input, struct body *body, struct error *error)
 {
-    int dim = input->dim;
+    int dim = body->dim;
     int64_t points = input->point_count;
     RETURN_IF_ERROR(NEW_ARRAY(&body->weight, points + BODY_POINT_PADDING, error));
     RETURN_IF_ERROR(NEW_ARRAY(&body->material, points + BODY_POINT_PADDING, error));
@@ -75,7 +70,7 @@ static enum status copy_points(const struct body_input *input, struct body *body
     memcpy(body->materials, input->materials, (size_t)input->material_count * sizeof *body->materials);
     for (int64_t q = 0; q < points; q++) {
         int64_t from = body->order.points[q];
-        bool alone = !body->smoothed && input->ptr[from + 1] <= input->ptr[from];
+        bool alone = !body->smoothed && input->lists->ptr[from + 1] <= input->lists->ptr[from];
         if (alone || !(input->weight[from] > 0.0)) {
             return fail(error, STATUS_INPUT, "points.weight: row %lld: no weight or no neighbours",
                         (long long)from);
@@ -111,60 +106,18 @@ static enum status cut_blocks(const struct body_input *input, struct body *body,
     return STATUS_OK;
 }
 
-/* Rows of the table of gradients: those of the points from `begin` to before `end`, with the nodes from
- * `first` to before `last` in the body's order. */
-static enum status copy_rows(const struct body_input *input, const struct body *body, int64_t begin,
-                             int64_t end, int64_t first, int64_t last, struct sparse *matrix,
-                             struct error *error)
-{
-    int dim = body->dim;
-    int64_t rows = body->point_count * dim, at = 0;
-    for (int64_t q = begin; q < end; q++) {
-        int64_t from = body->order.points[q];
-        for (int64_t i = input->ptr[from]; i < input->ptr[from + 1]; i++) {
-            int32_t node = body->order.places[input->idx[i]];
-            at += node >= first && node < last;
-        }
-    }
-    RETURN_IF_ERROR(sparse_new(rows, body->node_count, at * dim, matrix, error));
-    at = 0;
-    for (int64_t r = 0; r < rows; r++) {
-        int64_t from = body->order.points[r / dim];
-        for (int64_t i = input->ptr[from]; i < input->ptr[from + 1] && r >= begin * dim && r < end * dim;
-             i++) {
-            int32_t node = body->order.places[input->idx[i]];
-            if (node >= first && node < last) {
-                matrix->idx[at] = node;
-                matrix->value[at++] = input->dphi[i * dim + r % dim];
-            }
-        }
-        matrix->ptr[r + 1] = at;
-    }
-    return STATUS_OK;
-}
-
 /* The table of gradients at points. */
 static enum status copy_gradients(const struct body_input *input, struct body *body, struct error *error)
 {
-    struct body_share *share = &body->share;
-    int64_t rows = body->point_count * body->dim;
-    SCRATCH bool *wanted = NULL;
-    if (rows > INT32_MAX) {
-        return fail(error, STATUS_INPUT, "points.x: %lld points: too many", (long long)body->point_count);
+    NEW_SCRATCH(int32_t, place, body->point_count, error);
+    for (int64_t q = 0; q < body->point_count; q++) {
+        place[body->order.points[q]] = (int32_t)q;
     }
-    RETURN_IF_ERROR(copy_rows(input, body, share->begin_point, share->end_point, 0, body->node_count,
-                              &body->rows.matrix, error));
-    if (share->ranks != NULL) {
-        RETURN_IF_ERROR(copy_rows(input, body, 0, body->point_count, share->begin_node, share->end_node,
-                                  &body->rows.columns, error));
-        RETURN_IF_ERROR(sparse_rows_used(&body->rows.columns, &wanted, error));
-    }
-    RETURN_IF_ERROR(body_share_rows(body, wanted, error));
-    RETURN_IF_ERROR(row_ranges_of(share->begin_point * body->dim, share->end_point * body->dim, NULL,
-                                  &share->values, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&body->derivative, rows * VECTOR_STRIDE(body->dim), error));
-    body->pair_count = input->ptr[body->point_count];
-    return STATUS_OK;
+    const struct row_table table = {body->dim, input->lists, input->dphi, body->order.points, place};
+    RETURN_IF_ERROR(
+        NEW_ARRAY(&body->derivative, body->point_count * body->dim * VECTOR_STRIDE(body->dim), error));
+    body->pair_count = input->lists->ptr[body->point_count];
+    return body_rows_copy(input, 1, &table, body, error);
 }
 
 /* Synchronising threads costs some microseconds a step; each must have more work than that. An entry is a
@@ -178,12 +131,12 @@ static int worthwhile_threads(const struct body *body)
 
 enum status body_build(const struct body_input *input, struct body *body, struct error *error)
 {
-    *body = (struct body){.dim = input->dim,
-                          .node_count = input->node_count,
+    *body = (struct body){.dim = input->cells.dim,
+                          .node_count = input->cells.node_count,
                           .point_count = input->point_count,
                           .material_count = input->material_count,
-                          .smoothed = input->smoothed != NULL,
-                          .averaged = input->vertex != NULL};
+                          .smoothed = input->faces != NULL,
+                          .averaged = input->cell != NULL};
     if (body->point_count < 1 || body->point_count > INT32_MAX / (body->dim + 1)) {
         return fail(error, STATUS_INPUT, "points.x: %lld points: none, or too many",
                     (long long)body->point_count);
@@ -198,9 +151,9 @@ enum status body_build(const struct body_input *input, struct body *body, struct
     if (!body->smoothed) {
         RETURN_IF_ERROR(copy_gradients(input, body, error));
     } else {
-        body->pair_count = input->smoothed->node_ptr[body->node_count] +
-                           input->smoothed->edge_ptr[face_row_count(input->smoothed->faces)];
-        RETURN_IF_ERROR(smoothed_cells_build(input->smoothed, body, error));
+        body->pair_count =
+            input->node_lists->ptr[body->node_count] + input->lists->ptr[face_row_count(input->faces)];
+        RETURN_IF_ERROR(smoothed_cells_build(input, body, error));
     }
     body->threads = worthwhile_threads(body);
     RETURN_IF_ERROR(

@@ -5,6 +5,7 @@
  * 2010). Any number of threads gives the same bits (base/sparse.h). */
 #pragma once
 
+#include "approx/support/support.h"
 #include "base/status.h"
 #include "solid/body/body_share.h"
 #include "solid/body/prony.h"
@@ -17,28 +18,32 @@
 
 /* The input of body_build, in the caller's arrays. */
 struct body_input {
-    int dim; /* 2 (plane strain) or 3 */
-    int64_t node_count, point_count;
-    const double *node_x; /* nodes, node_count * dim, m: for locality only; NULL: as they come */
-    const double *x;      /* points, point_count * dim, m: for locality only */
+    struct cells cells;        /* nodes, m, and background cells; dim 2: plane strain */
+    const struct faces *faces; /* smoothed cells, one point each, in their order: all faces, with their edges;
+                                  NULL: any points */
+    int64_t point_count;
+    const double *x;      /* points, point_count * dim, m */
     const double *weight; /* point_count, m2 or m3 */
-    const int64_t *ptr;   /* point_count + 1 */
-    const int32_t *idx;   /* neighbours of each point */
-    const double *dphi;   /* ptr[point_count] * dim, 1/m */
+    const int32_t *cell;  /* point_count: of each point, for nodal volumes; NULL: the pointwise volumetric law
+                             throughout */
+    /* Shape functions: gradients at the points, 1/m; or of smoothed cells values on edges and at the nodes.
+     */
+    const struct neighbours *lists, *node_lists;
+    const double *dphi, *phi, *node_phi;
+    void (*copied)(void *context); /* called when the lists and phi of edges are no longer needed, and their
+                                      memory has been released (memory_give_back); or NULL. Several
+                                      processes need them until the body is freed, and it is not called */
+    void *context;
     const struct material *materials;
     const int32_t *material; /* point_count, index into materials */
     int64_t material_count;
     const int32_t *group; /* material_count: volumes are averaged over the materials of a group, such as those
                              of a region with a table; NULL: each by itself */
-    /* For nodal volumes; NULL: the pointwise volumetric law throughout. */
-    const int32_t *vertex;     /* point_count * (dim + 1): vertices of the background cell of each point */
-    const double *barycentric; /* point_count * (dim + 1): its barycentric coordinates there, sum 1 */
     const int32_t
         *junction;       /* point_count: of cells at a junction of prescribed and free boundary a number of
                             the part of the junction, >= 0; -1: of others (merged_cells.h); NULL: none */
     const bool *at_edge; /* node_count: nodes that own no nodal volume (nodal_volume.h); NULL: none */
-    const struct smoothed_cells_input *smoothed; /* the points are cells, in their order; NULL: any points */
-    const struct ranks *ranks;                   /* processes that compute the body together; NULL: one */
+    const struct ranks *ranks; /* processes that compute the body together; NULL: one */
 };
 
 /* Points are processed in groups of this size. weight, material, J and F are padded by as many entries, which

@@ -9,18 +9,18 @@
 /* Work of each block: entries of the lists of its points, or of the vertices of its cells. */
 static void measure_blocks(const struct body_input *input, const struct body *body, double *work)
 {
-    const struct smoothed_cells_input *cells = input->smoothed;
+    const int64_t *of_points = input->lists->ptr;
     int corners = body->dim + 1;
     for (int64_t b = 0; b < body->block_count; b++) {
         const struct block *block = &body->blocks[b];
         for (int64_t q = block->first_point; q < block->first_point + block->point_count; q++) {
             int64_t from = body->order.points[q];
-            if (cells == NULL) {
-                work[b] += (double)(input->ptr[from + 1] - input->ptr[from]);
+            if (!body->smoothed) {
+                work[b] += (double)(of_points[from + 1] - of_points[from]);
             }
-            for (int64_t k = from * corners; cells != NULL && k < (from + 1) * corners; k++) {
-                int32_t node = cells->cell_node[k];
-                work[b] += (double)(cells->node_ptr[node + 1] - cells->node_ptr[node]);
+            for (int64_t k = from * corners; body->smoothed && k < (from + 1) * corners; k++) {
+                const int64_t *ptr = input->node_lists->ptr + input->cells.node[k];
+                work[b] += (double)(ptr[1] - ptr[0]);
             }
         }
     }
@@ -30,15 +30,15 @@ static void measure_blocks(const struct body_input *input, const struct body *bo
  * nodes are in its own. */
 static void measure_nodes(const struct body_input *input, const struct body *body, double *work)
 {
-    if (input->smoothed != NULL) {
-        const int64_t *ptr = input->smoothed->node_ptr;
+    if (body->smoothed) {
+        const int64_t *ptr = input->node_lists->ptr;
         for (int64_t n = 0; n < body->node_count; n++) {
             work[n] = (double)(ptr[body->order.nodes[n] + 1] - ptr[body->order.nodes[n]]);
         }
         return;
     }
-    for (int64_t i = 0; i < input->ptr[body->point_count]; i++) {
-        work[body->order.places[input->idx[i]]] += 1.0;
+    for (int64_t i = 0; i < input->lists->ptr[body->point_count]; i++) {
+        work[body->order.places[input->lists->idx[i]]] += 1.0;
     }
 }
 
@@ -161,7 +161,7 @@ static int owner_of_part(const void *context, int64_t part)
 {
     const struct body *body = context;
     const struct field_averages *averages = &body->cells.averages;
-    int64_t b = first_from(averages->part_first, 0, averages->block_count + 1, part + 1) - 1;
+    int64_t b = first_from(averages->part_first, 0, body->block_count + 1, part + 1) - 1;
     return ranks_owner(body->share.ranks, body->share.block_first, b);
 }
 
@@ -182,7 +182,7 @@ static enum status share_parts(struct body *body, struct error *error)
 {
     struct body_share *share = &body->share;
     const struct field_averages *averages = &body->cells.averages;
-    int64_t count = averages->part_first[averages->block_count];
+    int64_t count = averages->part_first[body->block_count];
     NEW_SCRATCH(bool, sums, averages->row_count, error);
     NEW_SCRATCH(bool, parts, count, error);
     for (int64_t r = 0; r < averages->row_count; r++) {

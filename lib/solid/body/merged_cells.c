@@ -43,23 +43,21 @@ static int64_t end_of(const double *volume, const int64_t *partner, int64_t cell
 
 enum status merged_cells_find(const struct body_input *input, int64_t *root, struct error *error)
 {
-    const struct smoothed_cells_input *smoothed = input->smoothed;
-    const struct faces *faces = smoothed->faces;
-    const struct cells cells = {input->dim, input->node_count, smoothed->x, input->point_count,
-                                smoothed->cell_node};
-    NEW_SCRATCH(bool, poor, cells.count, error);
-    NEW_SCRATCH(double, volume, cells.count, error);
-    NEW_SCRATCH(int64_t, partner, cells.count, error);
-    NEW_SCRATCH(int64_t, size, cells.count, error);
-    for (int64_t c = 0; c < cells.count; c++) {
+    const struct faces *faces = input->faces;
+    const struct cells *cells = &input->cells;
+    NEW_SCRATCH(bool, poor, cells->count, error);
+    NEW_SCRATCH(double, volume, cells->count, error);
+    NEW_SCRATCH(int64_t, partner, cells->count, error);
+    NEW_SCRATCH(int64_t, size, cells->count, error);
+    for (int64_t c = 0; c < cells->count; c++) {
         partner[c] = c;
         size[c] = 1;
         volume[c] = fmax(0.0, input->weight[c]); /* nan: 0 */
-        poor[c] = cell_quality(&cells, c, NULL) < POOR_QUALITY;
+        poor[c] = cell_quality(cells, c, NULL) < POOR_QUALITY;
     }
     for (int64_t f = 0; f < faces->count; f++) {
         int64_t first = faces->cell[2 * f], second = faces->cell[2 * f + 1];
-        if (first >= 0 && second >= 0 && first < cells.count && second < cells.count) {
+        if (first >= 0 && second >= 0 && first < cells->count && second < cells->count) {
             if (poor[first]) {
                 propose(input, volume, first, second, partner);
             }
@@ -68,7 +66,7 @@ enum status merged_cells_find(const struct body_input *input, int64_t *root, str
             }
         }
     }
-    for (int64_t c = 0; c < cells.count; c++) {
+    for (int64_t c = 0; c < cells->count; c++) {
         int64_t end = end_of(volume, partner, c);
         root[c] = end == c || size[end] < MERGED_MOST_CELLS ? end : c;
         size[end] += root[c] != c;

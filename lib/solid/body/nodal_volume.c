@@ -34,10 +34,11 @@ static enum status number_volumes(struct nodal_volumes *volumes, struct placed *
 static bool share_out(const struct body_input *input, const struct body *body, int64_t q, double *share)
 {
     int vertices = body->dim + 1;
-    const int32_t *vertex = input->vertex + body->order.points[q] * vertices;
-    const double *coordinate = input->barycentric + body->order.points[q] * vertices;
-    double others = 0.0;
+    int64_t point = body->order.points[q], cell = input->cell[point];
+    const int32_t *vertex = input->cells.node + cell * vertices;
+    double others = 0.0, coordinate[4];
     bool at_edge = false;
+    cell_barycentric(&input->cells, cell, input->x + point * body->dim, coordinate);
     for (int k = 0; k < vertices; k++) {
         bool leaves = input->at_edge != NULL && input->at_edge[vertex[k]];
         others += leaves ? 0.0 : coordinate[k];
@@ -87,10 +88,11 @@ enum status nodal_volumes_build(const struct body_input *input, struct body *bod
     RETURN_IF_ERROR(NEW_ARRAY(&volumes->change, body->point_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&at_edge, body->point_count, error));
     for (int64_t s = 0; s < slots; s++) {
-        int64_t q = s / vertices, from = body->order.points[q] * vertices + s % vertices;
+        int64_t q = s / vertices, cell = input->cell[body->order.points[q]];
+        int64_t node = input->cells.node[cell * vertices + s % vertices];
         int32_t material = body->material[q];
         int32_t group = input->group != NULL ? input->group[material] : material;
-        keys[s] = (struct placed){(double)((int64_t)input->vertex[from] * body->material_count + group), s};
+        keys[s] = (struct placed){(double)(node * body->material_count + group), s};
     }
     for (int64_t q = 0; q < body->point_count; q++) {
         if (nodal_pressure_modulus(&body->materials[body->material[q]]) > 0.0) {

@@ -24,17 +24,16 @@ static void linear_gradients(int dim, const double *x, const int32_t *vertex, do
     }
 }
 
-static enum status set_linear_gradients(const struct smoothed_cells_input *input, int dim, int64_t cell_count,
-                                        const int64_t *order, struct smoothed_cells *smoothed,
-                                        struct error *error)
+static enum status set_linear_gradients(const struct cells *cells, struct body *body, struct error *error)
 {
-    RETURN_IF_ERROR(
-        NEW_ARRAY(&smoothed->linear_gradient, cell_count * dim * dim + BODY_POINT_PADDING, error));
-    for (int64_t q = 0; q < cell_count; q++) {
+    int dim = body->dim;
+    double **to = &body->cells.linear_gradient;
+    RETURN_IF_ERROR(NEW_ARRAY(to, body->point_count * dim * dim + BODY_POINT_PADDING, error));
+    for (int64_t q = 0; q < body->point_count; q++) {
         double gradient[9];
-        linear_gradients(dim, input->x, input->cell_node + order[q] * (dim + 1), gradient);
+        linear_gradients(dim, cells->x, cells->node + body->order.points[q] * (dim + 1), gradient);
         for (int k = 0; k < dim * dim; k++) {
-            smoothed->linear_gradient[k * cell_count + q] = gradient[k];
+            (*to)[k * body->point_count + q] = gradient[k];
         }
     }
     return STATUS_OK;
@@ -67,13 +66,11 @@ static enum status set_variance_weights(struct body *body, struct error *error)
     return STATUS_OK;
 }
 
-enum status smoothed_cells_build(const struct smoothed_cells_input *input, struct body *body,
-                                 struct error *error)
+enum status smoothed_cells_build(const struct body_input *input, struct body *body, struct error *error)
 {
     struct smoothed_cells *smoothed = &body->cells;
     int64_t entries = body->point_count * body->dim * body->dim + BODY_POINT_PADDING;
-    RETURN_IF_ERROR(
-        set_linear_gradients(input, body->dim, body->point_count, body->order.points, smoothed, error));
+    RETURN_IF_ERROR(set_linear_gradients(&input->cells, body, error));
     RETURN_IF_ERROR(set_variance_weights(body, error));
     RETURN_IF_ERROR(NEW_ARRAY(&smoothed->interpolant, entries, error));
     RETURN_IF_ERROR(smoothed_rows_build(input, body, error));

@@ -8,7 +8,7 @@
  * differ by the square of F_h - F only. */
 #pragma once
 
-#include "solid/operators/field_averages.h"
+#include "solid/body/field_averages.h"
 
 /* s_e by m_e. */
 #define EDGE_OFFSET 4.0
@@ -30,23 +30,6 @@
 
 struct body;
 
-/* Input, in the caller's arrays. One integration point per cell. */
-struct smoothed_cells_input {
-    const double *x;           /* nodes, node_count * dim, m */
-    const int32_t *cell_node;  /* cells * (dim + 1) */
-    const struct faces *faces; /* all of them, with their edges */
-    const int64_t *edge_ptr;   /* edge_count + 1: the shape functions on edges */
-    const int32_t *edge_idx;
-    const double *edge_phi;
-    const int64_t *node_ptr; /* node_count + 1: values of the shape functions at the nodes */
-    const int32_t *node_idx;
-    const double *node_phi;
-    void (*copied)(void *context); /* called when edge_ptr, edge_idx and edge_phi are no longer needed, and
-                                      their memory has been released (memory_give_back); or NULL. Several
-                                      processes need them until the body is freed, and it is not called */
-    void *context;
-};
-
 struct smoothed_cells {
     struct field_averages averages; /* on the edges and at the vertices */
     double *interpolant;            /* F_h at the last evaluation, as body->F */
@@ -65,11 +48,11 @@ struct smoothed_cells {
 
 /* Lay out the cells of a body whose sizes, orders and shares are known. STATUS_INPUT when a cell lacks a
  * face, or the values are not those on the edges and at the nodes. */
-MUST_CHECK enum status smoothed_cells_build(const struct smoothed_cells_input *input, struct body *body,
+MUST_CHECK enum status smoothed_cells_build(const struct body_input *input, struct body *body,
                                             struct error *error);
 
 /* The part of that in smoothed_rows.c: body->cells.averages, and its rows in body->rows. */
-MUST_CHECK enum status smoothed_rows_build(const struct smoothed_cells_input *input, struct body *body,
+MUST_CHECK enum status smoothed_rows_build(const struct body_input *input, struct body *body,
                                            struct error *error);
 void smoothed_cells_free(struct smoothed_cells *smoothed);
 

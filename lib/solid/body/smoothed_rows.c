@@ -24,29 +24,29 @@ static int edge_between(int dim, const int32_t *vertex, int32_t a, int32_t b)
     return -1;
 }
 
-/* edge_of_cell[CELL_EDGES(dim)] of each cell in the body's order, in which place[] is that of each cell. */
-static enum status match_edges(const struct smoothed_cells_input *input, const struct body *body,
-                               const int32_t *place, int32_t *edge_of_cell, struct error *error)
+/* of_edge[CELL_EDGES(dim)] of each cell in the body's order, in which place[] is that of each cell: its
+ * edges.
+ */
+static enum status match_edges(const struct body_input *input, const struct body *body, const int32_t *place,
+                               int32_t *of_edge, struct error *error)
 {
     const struct faces *faces = input->faces;
     int dim = body->dim;
-    int64_t cell_count = body->point_count;
-    for (int64_t i = 0; i < cell_count * CELL_EDGES(dim); i++) {
-        edge_of_cell[i] = -1;
-    }
+    int64_t count = body->point_count * CELL_EDGES(dim);
+    memset(of_edge, -1, (size_t)count * sizeof *of_edge);
     for (int64_t i = 0; i < faces->count * 2 * FACE_EDGES(dim); i++) {
         int64_t f = i / (2 * FACE_EDGES(dim)), cell = faces->cell[i / FACE_EDGES(dim)];
         int k = (int)(i % FACE_EDGES(dim));
-        if (cell >= 0 && cell < cell_count) {
-            const int32_t *node = faces->node + f * dim;
-            int at = edge_between(dim, input->cell_node + cell * (dim + 1), node[k], node[(k + 1) % dim]);
+        if (cell >= 0 && cell < body->point_count) {
+            const int32_t *node = faces->node + f * dim, *vertex = input->cells.node + cell * (dim + 1);
+            int at = edge_between(dim, vertex, node[k], node[(k + 1) % dim]);
             if (at >= 0) {
-                edge_of_cell[place[cell] * CELL_EDGES(dim) + at] = (int32_t)face_edge(faces, f, k);
+                of_edge[place[cell] * CELL_EDGES(dim) + at] = (int32_t)face_edge(faces, f, k);
             }
         }
     }
-    for (int64_t i = 0; i < cell_count * CELL_EDGES(dim); i++) {
-        if (edge_of_cell[i] < 0) {
+    for (int64_t i = 0; i < count; i++) {
+        if (of_edge[i] < 0) {
             return fail(error, STATUS_INPUT,
                         "faces.cell: cell %lld lacks a face: run ipoints for smoothed cells",
                         (long long)body->order.points[i / CELL_EDGES(dim)]);
@@ -70,61 +70,86 @@ static enum status place_rows(const struct faces *faces, const double *nodes, do
     return STATUS_OK;
 }
 
-/* The boundary faces of a body by their cells in the body's order: see field_averages.h. */
-static enum status list_faces(const struct smoothed_cells_input *input, const struct body *body,
-                              const int32_t *place, struct field_averages_input *tables, int32_t **face_row,
-                              struct error *error)
+/* The boundary faces of a body by their cells in the body's order, and of_face[]: these. */
+static enum status list_faces(const struct body_input *input, const int32_t *place, struct body *body,
+                              int32_t *of_face, struct error *error)
 {
     const struct faces *faces = input->faces;
+    struct field_averages *averages = &body->cells.averages;
     int dim = body->dim;
     SCRATCH int32_t *face = NULL;
     SCRATCH int64_t *ptr = NULL;
-    tables->face_count = faces->boundary_count;
-    NEW_SCRATCH(int32_t, cell, tables->face_count, error);
-    RETURN_IF_ERROR(NEW_ARRAY(&tables->face_cell, tables->face_count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&tables->face_vertex, tables->face_count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(face_row, tables->face_count, error));
-    for (int64_t f = 0; f < tables->face_count; f++) {
+    NEW_SCRATCH(int32_t, cell, averages->face_count, error);
+    RETURN_IF_ERROR(NEW_ARRAY(&averages->face_cell, averages->face_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&averages->face_vertex, averages->face_count, error));
+    for (int64_t f = 0; f < averages->face_count; f++) {
         cell[f] = place[faces->cell[2 * f]];
     }
-    RETURN_IF_ERROR(lists_by_row(tables->face_count, 1, cell, body->point_count, &ptr, &face, error));
-    for (int64_t i = 0; i < tables->face_count; i++) {
+    RETURN_IF_ERROR(lists_by_row(averages->face_count, 1, cell, body->point_count, &ptr, &face, error));
+    for (int64_t i = 0; i < averages->face_count; i++) {
         int64_t f = face[i];
-        const int32_t *vertex = input->cell_node + (int64_t)faces->cell[2 * f] * (dim + 1);
+        const int32_t *vertex = input->cells.node + (int64_t)faces->cell[2 * f] * (dim + 1);
         const int32_t *node = faces->node + f * dim;
         int32_t k = 0;
         while (k < dim && (vertex[k] == node[0] || vertex[k] == node[1] || vertex[k] == node[dim - 1])) {
             k++;
         }
-        tables->face_cell[i] = cell[f];
-        tables->face_vertex[i] = k;
-        (*face_row)[i] = (int32_t)(faces->edge_count + f);
+        averages->face_cell[i] = cell[f];
+        averages->face_vertex[i] = k;
+        of_face[i] = (int32_t)(faces->edge_count + f);
     }
     return STATUS_OK;
 }
 
-/* A given table of shape functions: its section, what a row stands for, and the points of the rows. */
-struct given_table {
-    const char *section, *of;
-    const int64_t *ptr;
-    const int32_t *idx;
-    const double *phi, *x;
-};
+/* The edges, vertices and faces that the cells use, in the order of of_use. */
+static enum status list_uses(const struct body_input *input, struct body *body, struct error *error)
+{
+    struct field_averages *averages = &body->cells.averages;
+    int dim = body->dim, corners = dim + 1;
+    int64_t vertices = field_averages_vertices(averages, dim), faces = field_averages_faces(averages, dim);
+    NEW_SCRATCH(int32_t, place, body->point_count, error);
+    for (int64_t q = 0; q < body->point_count; q++) {
+        place[body->order.points[q]] = (int32_t)q;
+    }
+    RETURN_IF_ERROR(match_edges(input, body, place, averages->of_use, error));
+    for (int64_t i = 0; i < faces - vertices; i++) {
+        averages->of_use[vertices + i] =
+            input->cells.node[body->order.points[i / corners] * corners + i % corners];
+    }
+    return list_faces(input, place, body, averages->of_use + faces, error);
+}
+
+/* From these to the rows of the tables. */
+static void place_uses(const struct row_table tables[2], struct body *body)
+{
+    struct field_averages *averages = &body->cells.averages;
+    int64_t vertices = field_averages_vertices(averages, body->dim);
+    int64_t faces = field_averages_faces(averages, body->dim);
+    for (int64_t i = 0; i < faces + averages->face_count; i++) {
+        bool is_vertex = i >= vertices && i < faces;
+        int64_t row = tables[is_vertex].place[averages->of_use[i]];
+        row += is_vertex ? tables[0].lists->count : 0;
+        averages->of_use[i] = (int32_t)row * VECTOR_STRIDE(body->dim);
+    }
+}
 
 /* Check that the rows reproduce 1 and x: they are values of the shape functions at x, or averages over an
- * edge or a face with the middle x. */
-static enum status check_table(const struct given_table *table, int64_t rows, int dim, const double *nodes,
-                               struct error *error)
+ * edge or a face with the middle x. `of`: what a row stands for. */
+static enum status check_table(const struct row_table *table, const char *of, const double *x,
+                               const struct cells *cells, struct error *error)
 {
+    const struct neighbours *lists = table->lists;
+    int dim = cells->dim;
+    int64_t rows = lists->count;
     int64_t bad = rows;
 #pragma omp parallel for reduction(min : bad) num_threads(chunks_of(rows, ROWS_FOR_THREAD).threads)
     for (int64_t r = 0; r < rows; r++) {
         double sum[4] = {-1.0}, size = 0.0, extent = 0.0;
-        for (int64_t i = table->ptr[r]; i < table->ptr[r + 1]; i++) {
+        for (int64_t i = lists->ptr[r]; i < lists->ptr[r + 1]; i++) {
             sum[0] += table->phi[i];
             size += fabs(table->phi[i]);
             for (int a = 0; a < dim; a++) {
-                double offset = nodes[(int64_t)table->idx[i] * dim + a] - table->x[r * dim + a];
+                double offset = cells->x[(int64_t)lists->idx[i] * dim + a] - x[r * dim + a];
                 sum[1 + a] += table->phi[i] * offset;
                 extent = fmax(extent, fabs(offset));
             }
@@ -135,100 +160,48 @@ static enum status check_table(const struct given_table *table, int64_t rows, in
         }
     }
     if (bad < rows) {
-        return fail(error, STATUS_INPUT, "%s: %s %lld: not the shape functions at this %s: run shapefn again",
-                    table->section, table->of, (long long)bad, table->of);
+        return fail(error, STATUS_INPUT,
+                    "%s.phi: %s %lld: not the shape functions at this %s: run shapefn again", of, of,
+                    (long long)bad, of);
     }
     return STATUS_OK;
 }
 
-/* One process: copy all rows. */
-static enum status copy_all(const struct smoothed_cells_input *input,
-                            const struct field_averages_input *tables, struct body *body, struct error *error)
-{
-    RETURN_IF_ERROR(field_averages_copy(tables, NULL, 0, body->node_count, &body->rows.matrix, error));
-    if (input->copied != NULL) {
-        input->copied(input->context);
-    }
-    RETURN_IF_ERROR(body_share_rows(body, NULL, error));
-    return row_ranges_of(0, body->cells.averages.row_count, NULL, &body->share.values, error);
-}
-
-/* Several processes: copy the rows that this one's cells need, and the columns of its nodes. */
-static enum status copy_shares(const struct field_averages_input *tables, struct body *body,
-                               struct error *error)
-{
-    struct body_share *share = &body->share;
-    struct field_averages *averages = &body->cells.averages;
-    struct row_operator *rows = &body->rows;
-    SCRATCH bool *needed = NULL, *used = NULL;
-    RETURN_IF_ERROR(body_share_values(body, &needed, error));
-    RETURN_IF_ERROR(row_ranges_of(0, averages->row_count, needed, &share->values, error));
-    RETURN_IF_ERROR(field_averages_copy(tables, needed, 0, body->node_count, &rows->matrix, error));
-    RETURN_IF_ERROR(
-        field_averages_copy(tables, NULL, share->begin_node, share->end_node, &rows->columns, error));
-    RETURN_IF_ERROR(sparse_rows_used(&rows->columns, &used, error));
-    RETURN_IF_ERROR(body_share_rows(body, used, error));
-    memcpy(averages->given, tables->tables, sizeof averages->given);
-    return STATUS_OK;
-}
-
-enum status smoothed_rows_build(const struct smoothed_cells_input *input, struct body *body,
-                                struct error *error)
+enum status smoothed_rows_build(const struct body_input *input, struct body *body, struct error *error)
 {
     struct field_averages *averages = &body->cells.averages;
-    int dim = body->dim, corners = dim + 1;
-    const struct faces *faces = input->faces;
-    int64_t rows = face_row_count(faces);
+    int dim = body->dim;
+    int64_t rows = face_row_count(input->faces), stride = VECTOR_STRIDE(dim);
     SCRATCH int64_t *order = NULL;
-    SCRATCH int32_t *face_row = NULL;
-    NEW_SCRATCH(int32_t, place, body->point_count, error);
-    for (int64_t q = 0; q < body->point_count; q++) {
-        place[body->order.points[q]] = (int32_t)q;
+    averages->row_count = rows + body->node_count;
+    averages->cell_count = body->point_count;
+    averages->face_count = input->faces->boundary_count;
+    int64_t uses = field_averages_faces(averages, dim) + averages->face_count;
+    if (averages->row_count > INT32_MAX / stride || uses > INT32_MAX) {
+        return fail(error, STATUS_INPUT, "%lld edges and nodes: too many", (long long)averages->row_count);
     }
-    NEW_SCRATCH(int32_t, edge_of_cell, body->point_count * CELL_EDGES(dim), error);
-    RETURN_IF_ERROR(match_edges(input, body, place, edge_of_cell, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&averages->value, averages->row_count * stride, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&averages->force, averages->row_count * stride, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&averages->of_use, uses, error));
+    RETURN_IF_ERROR(list_uses(input, body, error));
+    NEW_SCRATCH(int32_t, place, rows, error);
     NEW_SCRATCH(double, x, rows * dim, error);
-    RETURN_IF_ERROR(place_rows(faces, input->x, x, error));
-    const struct given_table edges = {"edge.phi",      "edge",          input->edge_ptr,
-                                      input->edge_idx, input->edge_phi, x};
-    const struct given_table nodes = {"node.phi",      "node",          input->node_ptr,
-                                      input->node_idx, input->node_phi, input->x};
-    RETURN_IF_ERROR(check_table(&edges, rows, dim, input->x, error));
-    RETURN_IF_ERROR(check_table(&nodes, body->node_count, dim, input->x, error));
     RETURN_IF_ERROR(NEW_ARRAY(&order, rows, error));
+    const struct row_table tables[] = {
+        {1, input->lists, input->phi, order, place},
+        {1, input->node_lists, input->node_phi, body->order.nodes, body->order.places}};
+    RETURN_IF_ERROR(place_rows(input->faces, input->cells.x, x, error));
+    RETURN_IF_ERROR(check_table(&tables[0], "edge", x, &input->cells, error));
+    RETURN_IF_ERROR(check_table(&tables[1], "node", input->cells.x, &input->cells, error));
     RETURN_IF_ERROR(renumber_morton(dim, rows, x, NULL, order, error));
-    NEW_SCRATCH(int32_t, vertex_of_cell, body->point_count * corners, error);
-    for (int64_t q = 0; q < body->point_count; q++) {
-        memcpy(vertex_of_cell + q * corners, input->cell_node + body->order.points[q] * corners,
-               (size_t)corners * sizeof *vertex_of_cell);
+    for (int64_t r = 0; r < rows; r++) {
+        place[order[r]] = (int32_t)r;
     }
-    NEW_SCRATCH(int64_t, block_first, body->block_count + 1, error);
-    for (int64_t b = 0; b < body->block_count; b++) {
-        block_first[b] = body->blocks[b].first_point;
-    }
-    block_first[body->block_count] = body->point_count;
-    struct field_averages_input tables = {
-        .dim = dim,
-        .block_count = body->block_count,
-        .block_first = block_first,
-        .node_count = body->node_count,
-        .cell_count = body->point_count,
-        .place = body->order.places,
-        .lets_go = input->copied != NULL && body->share.ranks == NULL,
-        .tables = {{rows, order, input->edge_ptr, input->edge_idx, input->edge_phi, edge_of_cell},
-                   {body->node_count, body->order.nodes, input->node_ptr, input->node_idx, input->node_phi,
-                    vertex_of_cell}}};
-    enum status listed = list_faces(input, body, place, &tables, &face_row, error);
-    tables.face_row = face_row;
-    averages->face_cell = tables.face_cell; /* freed with the body, whatever comes */
-    averages->face_vertex = tables.face_vertex;
-    RETURN_IF_ERROR(listed);
-    RETURN_IF_ERROR(field_averages_build(&tables, averages, error));
-    if (body->share.ranks == NULL) {
-        RETURN_IF_ERROR(copy_all(input, &tables, body, error));
-    } else {
-        RETURN_IF_ERROR(copy_shares(&tables, body, error));
+    place_uses(tables, body);
+    RETURN_IF_ERROR(field_averages_list(body, error));
+    if (body->share.ranks != NULL) {
+        memcpy(averages->given, tables, sizeof tables);
         averages->edge_order = array_take(&order);
     }
-    return STATUS_OK;
+    return body_rows_copy(input, 2, tables, body, error);
 }

@@ -112,15 +112,17 @@ static struct average field_at(const struct body *body, int64_t f, const int32_t
 {
     const struct field_averages *averages = &body->cells.averages;
     const struct sparse *matrix = &body->rows.matrix;
-    int64_t length = matrix->ptr[f + 1] - matrix->ptr[f], edges = averages->given[0].row_count;
+    int64_t length = matrix->ptr[f + 1] - matrix->ptr[f];
     *place = NULL;
     if (length > 0 || body->share.ranks == NULL) {
         return (struct average){length, matrix->idx + matrix->ptr[f], matrix->value + matrix->ptr[f]};
     }
-    const struct average_table *table = &averages->given[f < edges ? 0 : 1];
-    int64_t row = table->order[f < edges ? f : f - edges], at = table->ptr[row];
+    int64_t edges = averages->given[0].lists->count;
+    const struct row_table *table = &averages->given[f < edges ? 0 : 1];
+    const struct neighbours *lists = table->lists;
+    int64_t row = table->order[f < edges ? f : f - edges], at = lists->ptr[row];
     *place = body->order.places;
-    return (struct average){table->ptr[row + 1] - at, table->idx + at, table->phi + at};
+    return (struct average){lists->ptr[row + 1] - at, lists->idx + at, table->phi + at};
 }
 
 /* Count the entries of prepared columns in next[]; once they have room, store them from next[] on. */
