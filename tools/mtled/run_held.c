@@ -316,7 +316,7 @@ static void mark_pressed(const struct run *run, const struct bodies *bodies, dou
             }
             bodies->touches[bodies->of_node[contact->points->node[p]]] = true;
             if (between != NULL) {
-                int64_t corner = between->opposite.surface.facet[between->view[p].facet * system->dim];
+                int64_t corner = between->opposite.surface.facet[contact->view[p].facet * system->dim];
                 bodies->touches[bodies->of_node[between->opposite.rows.node[corner]]] = true;
             }
         }

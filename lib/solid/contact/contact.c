@@ -110,8 +110,12 @@ enum status contact_build(const struct boundary_averages *points, const struct b
                           const double *X, int dim, struct rigid_surface *surface, double stiffness,
                           struct contact *contact, struct error *error)
 {
-    *contact = (struct contact){
-        .dim = dim, .count = points->count, .points = points, .averages = averages, .surface = *surface};
+    *contact = (struct contact){.dim = dim,
+                                .count = points->count,
+                                .points = points,
+                                .averages = averages,
+                                .surface = *surface,
+                                .sign = 1};
     *surface = (struct rigid_surface){0};
     RETURN_IF_ERROR(contact_allocate(contact, stiffness, error));
     RETURN_IF_ERROR(contact_rest_place(contact, X, error));
@@ -196,6 +200,40 @@ static bool has_turned(const struct contact *contact, int64_t p, const struct ri
     return closest->on_edge || (contact->checked_distance[p] < 0.0 && turn2 > round_off * round_off);
 }
 
+void contact_place_point(struct contact *contact, int64_t p, const double *u)
+{
+    struct contact_view *view = &contact->view[p];
+    struct average average = average_of_boundary(contact->points, p);
+    int dim = contact->dim;
+    double x[3];
+    average_place(&average, dim, contact->rest + p * dim, u, x);
+    rigid_place_to_rest(&contact->place, dim, x, view->x);
+    for (int c = 0; c < dim; c++) {
+        view->sought[c] = view->x[c] - contact->held[p * dim + c] / contact->stiffness[p];
+    }
+}
+
+void contact_keep_point(struct contact *contact, int64_t p)
+{
+    struct contact_view *view = &contact->view[p];
+    int dim = contact->dim;
+    view->searched = view->turned = view->led = false;
+    view->facet = -1;
+    contact->gap[p] = contact->checked_distance[p];
+    contact->pressure[p] = 0.0;
+    memcpy(view->normal, contact->checked_normal + p * dim, (size_t)dim * sizeof *view->normal);
+}
+
+void contact_press_point(struct contact *contact, int64_t p, double gap, bool presses)
+{
+    contact->pressure[p] = presses ? fmax(0.0, -contact->stiffness[p] * gap) : 0.0;
+    contact->gap[p] = gap;
+    for (int c = 0; c < contact->dim; c++) {
+        contact->gap[p] +=
+            contact->view[p].normal[c] * contact->held[p * contact->dim + c] / contact->stiffness[p];
+    }
+}
+
 /* Search for the surface at point p. */
 static void search(struct contact *contact, int64_t p, struct contact_view *view)
 {
@@ -209,11 +247,7 @@ static void search(struct contact *contact, int64_t p, struct contact_view *view
     view->turned = gap < 0.0 && !view->behind && has_turned(contact, p, &closest);
     view->distance = fmin(gap, closest.distance);
     memcpy(view->normal, closest.normal, sizeof view->normal);
-    contact->pressure[p] = view->behind ? 0.0 : fmax(0.0, -contact->stiffness[p] * gap);
-    contact->gap[p] = view->behind ? INFINITY : gap;
-    for (int c = 0; c < contact->dim; c++) {
-        contact->gap[p] += view->normal[c] * contact->held[p * contact->dim + c] / contact->stiffness[p];
-    }
+    contact_press_point(contact, p, view->behind ? INFINITY : gap, true);
 }
 
 /* Lower bound of the distance of y_p from the surface, from that at the last search, m. */
@@ -230,17 +264,9 @@ static void measure_points(struct contact *contact, int64_t begin, int64_t end, 
     int dim = contact->dim;
     for (int64_t p = begin; p < end; p++) {
         struct contact_view *view = &contact->view[p];
-        double x[3], *normal = contact->normal + p * dim;
-        struct average average = average_of_boundary(contact->points, p);
-        average_place(&average, dim, contact->rest + p * dim, u, x);
-        rigid_place_to_rest(&contact->place, dim, x, view->x);
-        for (int c = 0; c < dim; c++) {
-            view->sought[c] = view->x[c] - contact->held[p * dim + c] / contact->stiffness[p];
-        }
-        view->searched = view->turned = false;
-        contact->gap[p] = contact->checked_distance[p];
-        contact->pressure[p] = 0.0;
-        memcpy(view->normal, contact->checked_normal + p * dim, (size_t)dim * sizeof *normal);
+        double *normal = contact->normal + p * dim;
+        contact_place_point(contact, p, u);
+        contact_keep_point(contact, p);
         if (all || !(least_distance(contact, p, view) > 0.0)) {
             search(contact, p, view);
         }
@@ -326,7 +352,7 @@ double contact_energy(const struct contact *contact)
             double held = contact->held[p * contact->dim + c];
             difference -= held * held;
         }
-        difference = contact_between_led(contact, p) ? 0.0 : difference;
+        difference = contact->view[p].led ? 0.0 : difference;
         sum += contact->points->area[p] * difference / (2.0 * contact->stiffness[p]);
     }
     return sum + friction_energy(contact);
@@ -334,19 +360,17 @@ double contact_energy(const struct contact *contact)
 
 void contact_total(const struct contact *contact, double *total)
 {
-    double sign = contact_between_sign(contact);
     memset(total, 0, (size_t)contact->dim * sizeof *total);
     for (int64_t p = 0; p < contact->count; p++) {
         double force[3];
         contact_point_force(contact, p, force);
-        add_scaled(contact->dim, sign, force, total);
+        add_scaled(contact->dim, contact->sign, force, total);
     }
 }
 
 void contact_moment(const struct contact *contact, const double *point, double moment[3])
 {
     int dim = contact->dim;
-    double sign = contact_between_sign(contact);
     memset(moment, 0, 3 * sizeof *moment);
     for (int64_t p = 0; p < contact->count; p++) {
         double arm[3] = {0.0, 0.0, 0.0}, force[3] = {0.0, 0.0, 0.0}, of_point[3];
@@ -360,7 +384,7 @@ void contact_moment(const struct contact *contact, const double *point, double m
             arm[c] -= raised + point[c];
         }
         vector_cross(arm, force, of_point);
-        add_scaled(3, sign, of_point, moment);
+        add_scaled(3, contact->sign, of_point, moment);
     }
 }
 

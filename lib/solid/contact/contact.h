@@ -35,6 +35,11 @@ struct contact_view {
                        * last step */
     double distance;  /* as checked_distance */
     double normal[3]; /* as checked_normal */
+    /* Between facets of the body: */
+    int64_t facet;    /* opposite the point; -1: none, or not searched for */
+    double weight[3]; /* of its corners */
+    double free_way;  /* as checked_free */
+    bool led;         /* the facet's points press on the point, not the point on it */
 };
 
 struct contact_between;
@@ -51,9 +56,10 @@ struct contact {
     struct rigid_motion motion;               /* of the surface */
     struct rigid_place place;                 /* placement of the surface: see contact_move */
     int32_t section;                          /* the caller's label */
-    double *stiffness;                        /* count: k_p, Pa/m, > 0 */
-    double modulus;                           /* k_p by the width there at first, Pa; 0: k_p is stated */
-    double *rest;                             /* count * dim: x_p at u = 0, so raised, m */
+    int sign; /* of the total force: 1 that on the points, -1 that on the opposite facets, 0 their sum */
+    double *stiffness; /* count: k_p, Pa/m, > 0 */
+    double modulus;    /* k_p by the width there at first, Pa; 0: k_p is stated */
+    double *rest;      /* count * dim: x_p at u = 0, so raised, m */
     /* The state, all that a checkpoint holds. The search is repeated for a point only when it may have moved
      * from checked_x by the surface's distance there. */
     double *multiplier;       /* dim for each contact node: lambda_a, Pa, in the surface's frame */
@@ -82,8 +88,13 @@ MUST_CHECK enum status contact_build(const struct boundary_averages *points,
                                      struct error *error);
 void contact_free(struct contact *contact);
 
-/* Allocate the arrays of a contact whose dim, count, points and averages are set. */
+/* Steps shared with contact_between.c: allocate the arrays of a contact whose dim, count, points and averages
+ * are set; place point p at parameters u, and let it have the gap of its last search and no pressure; and set
+ * the pressure, unless it does not press, and the gap of x_p, by that of y_p. */
 MUST_CHECK enum status contact_allocate(struct contact *contact, double stiffness, struct error *error);
+void contact_place_point(struct contact *contact, int64_t p, const double *u);
+void contact_keep_point(struct contact *contact, int64_t p);
+void contact_press_point(struct contact *contact, int64_t p, double gap, bool presses);
 
 /* The width of the facets at point p, m; and the largest depth, by that, at which a point that is found
  * behind the surface counts as having gone through it. */
@@ -150,6 +161,9 @@ double contact_missing_work(const struct contact *contact);
 /* The contact nodes: those of the nodal averages, or the points if there are none. A contact_node holds the
  * last evaluation: means over the points, weighted by the node's hat function. */
 const struct boundary_averages *contact_nodes(const struct contact *contact);
+
+/* Sample i of contact node a: a point, and its weight in the node's means; false behind the last one. */
+bool contact_sample(const struct contact *contact, int64_t a, int64_t i, int64_t *p, double *share);
 struct contact_node {
     double gap;         /* m, over the points that have one; INFINITY: none has */
     double pressure;    /* Pa */
@@ -168,7 +182,7 @@ struct contact_node contact_node(const struct contact *contact, int64_t a);
 double contact_energy(const struct contact *contact);
 
 /* total[dim] = total force on the body at the last evaluation, N (2D: N/m). Between facets of the body it is
- * that on the points, on the opposite facets, or 0: `sign` of contact_between.h. */
+ * that on the points, on the opposite facets, or 0: `sign`. */
 void contact_total(const struct contact *contact, double *total);
 
 /* moment[3] = moment of this force about point[dim], N m (2D: N, and only moment[2] is not 0). The forces on

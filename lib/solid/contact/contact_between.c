@@ -19,7 +19,7 @@ void contact_between_free(struct contact *contact)
     if (between != NULL) {
         opposite_free(&between->opposite);
         FREE_ALL(between->part, between->begin, between->before, between->checked_way, between->checked_free,
-                 between->taken_facet, between->taken_weight, between->now, between->view);
+                 between->taken_facet, between->taken_weight, between->now);
     }
     free(between);
     contact->between = NULL;
@@ -49,20 +49,6 @@ void contact_between_stiffen(struct contact *contact, double modulus)
     for (int64_t v = 0; contact->between != NULL && v < contact->between->opposite.rows.count; v++) {
         double area = contact->between->opposite.rows.area[v];
         contact->between->opposite.stiffness[v] = modulus / (contact->dim == 2 ? area : sqrt(area));
-    }
-}
-
-/* Place the points of facet f at parameters u. */
-static void place_facet(struct contact *contact, int64_t f, const double *u)
-{
-    int dim = contact->dim, points = contact->between->per_facet;
-    for (int64_t p = f * points; p < (f + 1) * points; p++) {
-        struct contact_view *view = &contact->view[p];
-        struct average average = average_of_boundary(contact->points, p);
-        average_place(&average, dim, contact->rest + p * dim, u, view->x);
-        for (int c = 0; c < dim; c++) {
-            view->sought[c] = view->x[c] - contact->held[p * dim + c] / contact->stiffness[p];
-        }
     }
 }
 
@@ -124,27 +110,22 @@ static void search(struct contact *contact, int64_t p, const double *normal, boo
 {
     struct contact_between *between = contact->between;
     struct contact_view *view = &contact->view[p];
-    struct between_view *here = &between->view[p];
     double reach = all ? told_widths * contact_width(contact, p) : reach_of(contact, p);
-    struct rigid_contact closest = find_place(contact, p, normal, reach, &here->free_way);
+    struct rigid_contact closest = find_place(contact, p, normal, reach, &view->free_way);
     memset(view->normal, 0, sizeof view->normal);
     view->distance = contact->gap[p] = INFINITY;
     if (!closest.found) {
         return;
     }
-    here->facet = closest.facet;
-    here->led = !opposite_leads(&between->opposite, contact->points->normal + p * contact->dim,
+    view->facet = closest.facet;
+    view->led = !opposite_leads(&between->opposite, contact->points->normal + p * contact->dim,
                                 p / between->per_facet, closest.facet);
-    memcpy(here->weight, closest.weight, sizeof here->weight);
+    memcpy(view->weight, closest.weight, sizeof view->weight);
     memcpy(view->normal, closest.normal, sizeof view->normal);
     double gap = closest.gap - between->begin[p];
     view->distance = gap - held_way(contact, p);
-    contact->pressure[p] = here->led ? 0.0 : fmax(0.0, -contact->stiffness[p] * gap);
+    contact_press_point(contact, p, gap, !view->led);
     view->turned = contact->pressure[p] > 0.0 && closest.on_edge;
-    contact->gap[p] = gap;
-    for (int c = 0; c < contact->dim; c++) {
-        contact->gap[p] += view->normal[c] * contact->held[p * contact->dim + c] / contact->stiffness[p];
-    }
 }
 
 /* The relative motion of point p and opposite facets from the last evaluation until one may be near enough
@@ -153,7 +134,7 @@ static double free_way(const struct contact *contact, int64_t p)
 {
     const struct contact_between *between = contact->between;
     if (contact->view[p].searched) {
-        return fmin(contact->view[p].distance, between->view[p].free_way);
+        return fmin(contact->view[p].distance, contact->view[p].free_way);
     }
     return fmin(contact->checked_distance[p], between->checked_free[p]) -
            (between->way + between->moved - between->checked_way[p]) - held_way(contact, p);
@@ -169,8 +150,10 @@ static void measure_facet(struct contact *contact, int64_t f, const double *u, b
     for (int64_t p = f * points; p < (f + 1) * points; p++) {
         any = any || contact->view[p].searched;
     }
+    for (int64_t p = f * points; p < (f + 1) * points && any; p++) {
+        contact_place_point(contact, p, u);
+    }
     if (any) {
-        place_facet(contact, f, u);
         facet_normal(contact, f, normal);
     }
     for (int64_t p = f * points; p < (f + 1) * points; p++) {
@@ -196,21 +179,13 @@ static double relative_way(const struct contact *contact, const double *u)
 void contact_between_measure(struct contact *contact, const double *u, bool all)
 {
     struct contact_between *between = contact->between;
-    int dim = contact->dim;
     bool any = false;
     between->moved = relative_way(contact, u);
     memcpy(between->now, u, (size_t)between->values * sizeof *u);
     for (int64_t p = 0; p < contact->count; p++) {
-        struct contact_view *view = &contact->view[p];
-        view->searched = false; /* free_way is that of the last search */
-        view->searched = all || !(free_way(contact, p) > 0.0);
-        view->turned = false;
-        any = any || view->searched;
-        between->view[p].facet = -1;
-        between->view[p].led = false;
-        contact->gap[p] = contact->checked_distance[p];
-        contact->pressure[p] = 0.0;
-        memcpy(view->normal, contact->checked_normal + p * dim, (size_t)dim * sizeof *view->normal);
+        contact_keep_point(contact, p); /* free_way is that of the last search */
+        contact->view[p].searched = all || !(free_way(contact, p) > 0.0);
+        any = any || contact->view[p].searched;
     }
     if (any) {
         opposite_move(&between->opposite, u);
@@ -236,7 +211,7 @@ void contact_between_accept(struct contact *contact)
     for (int64_t p = 0; p < contact->count; p++) {
         if (contact->view[p].searched) {
             between->checked_way[p] = between->way;
-            between->checked_free[p] = between->view[p].free_way;
+            between->checked_free[p] = contact->view[p].free_way;
         }
     }
 }
@@ -259,7 +234,7 @@ double contact_passes(const struct contact *contact, const double *step)
     int dim = contact->dim;
     double most = 0.0, longest = between != NULL ? longest_corner(&between->opposite, dim, step) : 0.0;
     for (int64_t p = 0; p < contact->count && between != NULL; p++) {
-        const struct between_view *here = &between->view[p];
+        const struct contact_view *here = &contact->view[p];
         struct average average = average_of_boundary(contact->points, p);
         double past[3], corner[3];
         average_take(&average, dim, step, past);
@@ -318,7 +293,7 @@ static bool begin(struct contact *contact, const double *own, const double *othe
     for (int64_t p = 0; p < contact->count; p++) {
         double reach = far && !any ? INFINITY : reach_of(contact, p), height = own != NULL ? own[p] : 0.0;
         struct rigid_contact closest =
-            find_place(contact, p, contact->points->normal + p * dim, reach, &between->view[p].free_way);
+            find_place(contact, p, contact->points->normal + p * dim, reach, &contact->view[p].free_way);
         any = any || closest.found;
         if (closest.found && closest.distance < reach_of(contact, p)) {
             height += other != NULL ? height_there(contact, &closest, other) : 0.0;
@@ -341,8 +316,7 @@ static enum status allocate(struct contact *contact, int64_t values, struct erro
     RETURN_IF_ERROR(NEW_ARRAY(&between->checked_free, count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&between->taken_facet, count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&between->taken_weight, count * 3, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&between->now, values, error));
-    return NEW_ARRAY(&between->view, count, error);
+    return NEW_ARRAY(&between->now, values, error);
 }
 
 enum status contact_between_build(const struct boundary_averages *points,
@@ -351,11 +325,11 @@ enum status contact_between_build(const struct boundary_averages *points,
                                   double stiffness, const double *own, const double *other, bool far,
                                   struct contact *contact, bool *any, struct error *error)
 {
-    *contact = (struct contact){.dim = dim, .count = points->count, .points = points, .averages = averages};
+    *contact = (struct contact){
+        .dim = dim, .count = points->count, .points = points, .averages = averages, .sign = sign};
     RETURN_IF_ERROR(NEW_ARRAY(&contact->between, 1, error));
     struct contact_between *between = contact->between;
     between->per_facet = per_facet;
-    between->sign = sign;
     between->opposite = *opposite;
     *opposite = (struct opposite){0};
     between->leverage = longest_row(points) + longest_row(&between->opposite.rows);

@@ -19,17 +19,9 @@
 #include "solid/contact/contact.h"
 #include "solid/contact/opposite.h"
 
-struct between_view {
-    int64_t facet;    /* opposite the point; -1: none, or not searched for */
-    double weight[3]; /* of its corners */
-    double free_way;  /* as checked_free */
-    bool led;         /* the facet's points press on the point, not the point on it */
-};
-
 struct contact_between {
     struct opposite opposite;
-    int per_facet; /* points of each facet, facet by facet */
-    int sign;      /* of the total force: 1 that on the points, -1 that on the opposite facets, 0 their sum */
+    int per_facet;     /* points of each facet, facet by facet */
     int64_t values;    /* length of u */
     double leverage;   /* largest relative motion of a point and an opposite place, by the largest motion of a
                           parameter */
@@ -45,9 +37,8 @@ struct contact_between {
     int64_t *taken_facet; /* points: facet of contact_between_take + 1; 0: none */
     double *taken_weight; /* points * 3: weights of its corners */
     /* Of the last evaluation. */
-    double *now;               /* values: u */
-    double moved;              /* to be added to way, m */
-    struct between_view *view; /* points */
+    double *now;  /* values: u */
+    double moved; /* to be added to way, m */
 };
 
 /* As contact_build. Takes over `opposite`, which becomes empty, also on failure. The points are `per_facet`
@@ -70,8 +61,6 @@ void contact_between_stiffen(struct contact *contact, double modulus);
 void contact_between_measure(struct contact *contact, const double *u, bool all);
 void contact_between_accept(struct contact *contact);
 void contact_between_react(struct contact *contact, double *force);
-double contact_between_sign(const struct contact *contact);
-bool contact_between_led(const struct contact *contact, int64_t p);
 
 /* Let contact_between_part refer to the places opposite the points at the last evaluation; and whether these
  * lie on other facets than those it refers to. */
@@ -79,19 +68,11 @@ void contact_between_take(struct contact *contact);
 bool contact_between_moves(const struct contact *contact);
 
 /* The gap of contact node a varies with the mean of the field there minus a weighted sum of the field at
- * opposite corners. Gives corner i of these, a row of opposite.rows, and its weight; false behind the last
- * one. */
-bool contact_between_part(const struct contact *contact, int64_t a, int64_t i, int64_t *corner,
+ * opposite corners. Gives the average that moves corner i of these, and its weight, which may be 0; false
+ * behind the last one. */
+bool contact_between_part(const struct contact *contact, int64_t a, int64_t i, struct average *average,
                           double *weight);
 
-/* The average that moves an opposite corner. */
-struct average contact_between_corner(const struct contact *contact, int64_t corner);
-
-/* The averages to which the penalties of a contact may add stiffness, whatever touches, and that stiffness,
- * N/m (2D: N/m2): the points, then the corners of opposite facets. */
-int64_t contact_bond_count(const struct contact *contact);
-struct average contact_bond(const struct contact *contact, int64_t b, double *stiffness);
-
-/* mass[node_count] += a bound of the diagonal of the contact's stiffness. Between facets of the body, only
- * points near an opposite facet count. */
-void contact_add_to_bound(const struct contact *contact, double *mass);
+/* mass[node_count] += a bound of the diagonal of the contact's stiffness, N/m (2D: N/m2): whatever touches;
+ * or not `all`, between facets of the body, of points near an opposite facet. */
+void contact_add_to_bound(const struct contact *contact, bool all, double *mass);

@@ -8,16 +8,6 @@
 #include <math.h>
 #include <string.h>
 
-double contact_between_sign(const struct contact *contact)
-{
-    return contact->between == NULL ? 1.0 : (double)contact->between->sign;
-}
-
-bool contact_between_led(const struct contact *contact, int64_t p)
-{
-    return contact->between != NULL && contact->between->view[p].led;
-}
-
 void contact_between_react(struct contact *contact, double *force)
 {
     int dim = contact->dim;
@@ -27,7 +17,7 @@ void contact_between_react(struct contact *contact, double *force)
     struct opposite *opposite = &contact->between->opposite;
     memset(opposite->load, 0, (size_t)(opposite->rows.count * dim) * sizeof *opposite->load);
     for (int64_t p = 0; p < contact->count; p++) {
-        const struct between_view *here = &contact->between->view[p];
+        const struct contact_view *here = &contact->view[p];
         double strength = contact->pressure[p] * contact->points->area[p], on_point[3];
         for (int c = 0; c < dim; c++) {
             on_point[c] = strength * contact->normal[p * dim + c];
@@ -53,8 +43,8 @@ void contact_between_take(struct contact *contact)
 {
     struct contact_between *between = contact->between;
     for (int64_t p = 0; p < contact->count && between != NULL; p++) {
-        const struct between_view *here = &between->view[p];
-        if (contact->view[p].searched) {
+        const struct contact_view *here = &contact->view[p];
+        if (here->searched) {
             between->taken_facet[p] = here->facet + 1;
             memcpy(between->taken_weight + p * 3, here->weight, sizeof here->weight);
         }
@@ -66,78 +56,65 @@ bool contact_between_moves(const struct contact *contact)
     const struct contact_between *between = contact->between;
     bool moves = false;
     for (int64_t p = 0; p < contact->count && between != NULL && !moves; p++) {
-        moves = contact->view[p].searched && between->taken_facet[p] != between->view[p].facet + 1;
+        moves = contact->view[p].searched && between->taken_facet[p] != contact->view[p].facet + 1;
     }
     return moves;
 }
 
-bool contact_between_part(const struct contact *contact, int64_t a, int64_t i, int64_t *corner,
+bool contact_between_part(const struct contact *contact, int64_t a, int64_t i, struct average *average,
                           double *weight)
 {
-    const struct boundary_averages *averages = contact->averages;
     const struct contact_between *between = contact->between;
     int dim = contact->dim;
+    int64_t p;
+    double share;
     *weight = 0.0;
-    if (between == NULL || i >= dim * (averages->sample_ptr[a + 1] - averages->sample_ptr[a])) {
+    if (between == NULL || !contact_sample(contact, a, i / dim, &p, &share)) {
         return false;
     }
-    int64_t s = averages->sample_ptr[a] + i / dim, p = averages->sample_point[s];
     int64_t facet = between->taken_facet[p] - 1;
     if (facet >= 0) {
-        *weight = averages->sample_share[s] * between->taken_weight[p * 3 + i % dim];
-        *corner = between->opposite.surface.facet[facet * dim + i % dim];
+        *weight = share * between->taken_weight[p * 3 + i % dim];
+        *average = average_of_boundary(&between->opposite.rows,
+                                       between->opposite.surface.facet[facet * dim + i % dim]);
     }
     return true;
 }
 
-struct average contact_between_corner(const struct contact *contact, int64_t corner)
+/* The largest sum of the magnitudes of a row of the stiffness bounds its eigenvalues. */
+static void add_bond(const struct boundary_averages *rows, int64_t r, double stiffness, double *mass)
 {
-    return average_of_boundary(&contact->between->opposite.rows, corner);
+    struct average average = average_of_boundary(rows, r);
+    double sum = 0.0;
+    for (int64_t i = 0; i < average.length; i++) {
+        sum += fabs(average.phi[i]);
+    }
+    sum *= stiffness;
+    for (int64_t i = 0; i < average.length; i++) {
+        mass[average.idx[i]] += sum * fabs(average.phi[i]);
+    }
 }
 
-int64_t contact_bond_count(const struct contact *contact)
-{
-    return contact->count + (contact->between != NULL ? contact->between->opposite.rows.count : 0);
-}
-
-struct average contact_bond(const struct contact *contact, int64_t b, double *stiffness)
+void contact_add_to_bound(const struct contact *contact, bool all, double *mass)
 {
     const struct boundary_averages *points = contact->points;
-    if (b < contact->count) {
-        *stiffness = contact->stiffness[b] * points->area[b];
-        return average_of_boundary(points, b);
-    }
-    const struct opposite *opposite = &contact->between->opposite;
-    *stiffness = opposite->stiffness[b - contact->count] * opposite->rows.area[b - contact->count];
-    return average_of_boundary(&opposite->rows, b - contact->count);
-}
-
-static void add_bond(const struct average *average, double stiffness, double *mass)
-{
-    double sum = 0.0;
-    for (int64_t i = 0; i < average->length; i++) {
-        sum += fabs(average->phi[i]);
-    }
-    for (int64_t i = 0; i < average->length; i++) {
-        mass[average->idx[i]] += stiffness * fabs(average->phi[i]) * sum;
-    }
-}
-
-void contact_add_to_bound(const struct contact *contact, double *mass)
-{
-    const struct contact_between *between = contact->between;
-    int dim = contact->dim;
+    const struct opposite *opposite = contact->between != NULL ? &contact->between->opposite : NULL;
+    /* A point and its opposite place form one row, whose square is at most twice the sum of those of its
+     * parts. */
+    double parts = all && opposite != NULL ? 2.0 : 1.0;
     for (int64_t p = 0; p < contact->count; p++) {
-        double stiffness;
-        struct average average = contact_bond(contact, p, &stiffness);
-        bool near = between == NULL || contact->gap[p] < INFINITY;
-        if (near) {
-            add_bond(&average, stiffness, mass);
+        const struct contact_view *here = &contact->view[p];
+        double stiffness = contact->stiffness[p] * points->area[p];
+        bool near = opposite != NULL && !all;
+        if (!near || contact->gap[p] < INFINITY) {
+            add_bond(points, p, parts * stiffness, mass);
         }
-        for (int k = 0; k < dim && near && between != NULL && between->view[p].facet >= 0; k++) {
-            int64_t v = between->opposite.surface.facet[between->view[p].facet * dim + k];
-            average = average_of_boundary(&between->opposite.rows, v);
-            add_bond(&average, stiffness * between->view[p].weight[k], mass);
+        for (int k = 0; k < contact->dim && near && contact->gap[p] < INFINITY && here->facet >= 0; k++) {
+            add_bond(&opposite->rows, opposite->surface.facet[here->facet * contact->dim + k],
+                     stiffness * here->weight[k], mass);
         }
+    }
+    for (int64_t v = 0; all && opposite != NULL && v < opposite->rows.count; v++) {
+        add_bond(&opposite->rows, v, parts * (opposite->stiffness[v] * opposite->rows.area[v]), mass);
     }
 }

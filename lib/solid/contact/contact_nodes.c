@@ -31,6 +31,16 @@ const struct boundary_averages *contact_nodes(const struct contact *contact)
     return contact->averages != NULL ? contact->averages : contact->points;
 }
 
+bool contact_sample(const struct contact *contact, int64_t a, int64_t i, int64_t *p, double *share)
+{
+    const struct boundary_averages *averages = contact->averages;
+    int64_t s = averages != NULL ? averages->sample_ptr[a] + i : i;
+    bool any = s < (averages != NULL ? averages->sample_ptr[a + 1] : 1);
+    *p = averages != NULL && any ? averages->sample_point[s] : a;
+    *share = averages != NULL && any ? averages->sample_share[s] : 1.0;
+    return any;
+}
+
 /* Add the values at point p to the averages of a node, with the weight `share`. Returns the share where the
  * point has a gap, else 0. */
 static double add_point(const struct contact *contact, int64_t p, double share, struct contact_node *node)
@@ -54,12 +64,11 @@ static double add_point(const struct contact *contact, int64_t p, double share, 
 
 struct contact_node contact_node(const struct contact *contact, int64_t a)
 {
-    const struct boundary_averages *averages = contact->averages;
     struct contact_node node = {0};
-    double within = averages == NULL ? add_point(contact, a, 1.0, &node) : 0.0;
-    for (int64_t s = averages != NULL ? averages->sample_ptr[a] : 0;
-         averages != NULL && s < averages->sample_ptr[a + 1]; s++) {
-        within += add_point(contact, averages->sample_point[s], averages->sample_share[s], &node);
+    double within = 0.0, share;
+    int64_t p;
+    for (int64_t i = 0; contact_sample(contact, a, i, &p, &share); i++) {
+        within += add_point(contact, p, share, &node);
     }
     node.gap = within > 0.0 ? node.gap / within : INFINITY;
     vector_normalise(contact->dim, node.normal);
@@ -82,18 +91,11 @@ static void add_difference(const struct contact *contact, int64_t p, double weig
  * change is the penetration there; 0: nothing changes. */
 static double augmented(const struct contact *contact, int64_t a, double next[3])
 {
-    const struct boundary_averages *averages = contact->averages;
-    double sum[3] = {0.0, 0.0, 0.0}, direction[3] = {0.0, 0.0, 0.0}, compliance = 0.0, along = 0.0;
+    double sum[3] = {0.0, 0.0, 0.0}, direction[3] = {0.0, 0.0, 0.0}, compliance = 0.0, along = 0.0, share;
+    int64_t p;
     memcpy(next, contact->multiplier + a * contact->dim, (size_t)contact->dim * sizeof *next);
-    if (averages == NULL) {
-        compliance = 1.0 / contact->stiffness[a];
-        add_difference(contact, a, compliance, sum, direction);
-    }
-    for (int64_t s = averages != NULL ? averages->sample_ptr[a] : 0;
-         averages != NULL && s < averages->sample_ptr[a + 1]; s++) {
-        int64_t p = averages->sample_point[s];
-        double part =
-            contact_between_led(contact, p) ? 0.0 : averages->sample_share[s] / contact->stiffness[p];
+    for (int64_t i = 0; contact_sample(contact, a, i, &p, &share); i++) {
+        double part = contact->view[p].led ? 0.0 : share / contact->stiffness[p];
         compliance += part;
         add_difference(contact, p, part, sum, direction);
     }

@@ -101,10 +101,10 @@ void friction_measure(struct contact *contact)
 static void take_place(struct contact *contact, int64_t p)
 {
     struct contact_friction *friction = contact->friction;
-    const struct between_view *here = &contact->between->view[p];
+    const struct contact_view *here = &contact->view[p];
     int dim = contact->dim;
     double *weight = friction->place_weight + p * dim, *ahead = friction->ahead + p * dim, place[3];
-    friction->place_facet[p] = contact->view[p].searched ? here->facet + 1 : 0;
+    friction->place_facet[p] = here->searched ? here->facet + 1 : 0;
     if (friction->place_facet[p] == 0) {
         friction->yield[p] = 0.0;
         return;
@@ -205,7 +205,7 @@ void friction_load(const struct contact *contact, double *load)
 static void weigh_behind(const struct contact *contact, int64_t p, const double *way, double *weight)
 {
     const struct rigid_surface *surface = &contact->between->opposite.surface;
-    const struct between_view *here = &contact->between->view[p];
+    const struct contact_view *here = &contact->view[p];
     int dim = contact->dim;
     double edge[2][3], square[2], both = 0.0, along[2] = {0.0}, part[2] = {0.0};
     const int32_t *corner = surface->facet + here->facet * dim;
@@ -234,7 +234,7 @@ static void weigh_behind(const struct contact *contact, int64_t p, const double 
  * slip across the normal is `way`. */
 static void turn_into_facet(const struct contact *contact, int64_t p, const double *way, double *in_plane)
 {
-    const struct between_view *here = &contact->between->view[p];
+    const struct contact_view *here = &contact->view[p];
     const double *normal = slip_normal(contact, p);
     int dim = contact->dim;
     const double *plane = contact->between->opposite.surface.normal + here->facet * dim;
@@ -256,8 +256,8 @@ static void move_anchor(struct contact *contact, int64_t p, const double *way)
         vector_subtract(dim, contact->view[p].x, way, anchor);
         return;
     }
-    bool found = contact->view[p].searched && contact->between->view[p].facet >= 0;
-    friction->facet[p] = found ? contact->between->view[p].facet + 1 : 0;
+    bool found = contact->view[p].searched && contact->view[p].facet >= 0;
+    friction->facet[p] = found ? contact->view[p].facet + 1 : 0;
     if (found) {
         double in_plane[3];
         turn_into_facet(contact, p, way, in_plane);

@@ -17,8 +17,7 @@ double dynamics_time_next(const struct dynamics *d)
     return d->left == 1 ? d->options->end_time : d->mark + (double)(d->done + 1) * d->step;
 }
 
-/* The largest sum of the magnitudes of a row of M^-1 K, for the penalties of all contacts, bounds its
- * eigenvalues. */
+/* The bound of M^-1 K for the penalties of all contacts. */
 void dynamics_bound_contacts(struct dynamics *d)
 {
     const struct solid_system *system = d->system;
@@ -27,20 +26,7 @@ void dynamics_bound_contacts(struct dynamics *d)
         stiffness[n] = 0.0;
     }
     for (int64_t c = 0; c < system->contact_count; c++) {
-        /* A point and its opposite place form one row, whose square is at most twice the sum of those of its
-         * parts. */
-        double parts = system->contacts[c].between != NULL ? 2.0 : 1.0;
-        for (int64_t b = 0; b < contact_bond_count(&system->contacts[c]); b++) {
-            double sum = 0.0, bond;
-            struct average average = contact_bond(&system->contacts[c], b, &bond);
-            for (int64_t i = 0; i < average.length; i++) {
-                sum += fabs(average.phi[i]);
-            }
-            sum *= parts * bond;
-            for (int64_t i = 0; i < average.length; i++) {
-                stiffness[average.idx[i]] += sum * fabs(average.phi[i]);
-            }
-        }
+        contact_add_to_bound(&system->contacts[c], true, stiffness);
     }
     for (int64_t n = 0; n < system->node_count; n++) {
         d->contact_squared = fmax(d->contact_squared, stiffness[n] / system->lumped_mass[n]);

@@ -10,18 +10,6 @@
 /* The share of friction that A counts in at each contact node of a body that may move as a whole. */
 static const double least_sticks = 0.01;
 
-/* The next part, from *i on, of what is opposite contact node a that has a weight; false: no more. */
-static bool next_opposite(const struct contact *contact, int64_t a, int64_t *i, int64_t *corner,
-                          double *weight)
-{
-    while (contact_between_part(contact, a, (*i)++, corner, weight)) {
-        if (*weight != 0.0) {
-            return true;
-        }
-    }
-    return false;
-}
-
 /* Of the coarse fields, at contact node a less what is opposite: the mean along the normal, and along each
  * direction without its part along that. */
 static void take_fields(const struct contact *contact, int64_t a, const double *normal,
@@ -29,7 +17,6 @@ static void take_fields(const struct contact *contact, int64_t a, const double *
 {
     int count = contact->friction != NULL ? contact->dim + 1 : 1;
     struct average average = average_of_boundary(contact_nodes(contact), a);
-    int64_t corner;
     double weight, direction[4 * 3] = {0.0};
     int dim = contact->dim;
     memcpy(direction, normal, (size_t)dim * sizeof *normal);
@@ -39,9 +26,10 @@ static void take_fields(const struct contact *contact, int64_t a, const double *
     }
     coarse_rows_clear(rows);
     coarse_rows_add_average(rows, &average, 1.0, count, direction);
-    for (int64_t i = 0; next_opposite(contact, a, &i, &corner, &weight);) {
-        average = contact_between_corner(contact, corner);
-        coarse_rows_add_average(rows, &average, -weight, count, direction);
+    for (int64_t i = 0; contact_between_part(contact, a, i, &average, &weight); i++) {
+        if (weight != 0.0) {
+            coarse_rows_add_average(rows, &average, -weight, count, direction);
+        }
     }
 }
 

@@ -206,7 +206,7 @@ static void add_to_bound(const struct average *average, double stiffness, double
 static void add_penalties_to_bound(const struct solid_system *system, double *mass)
 {
     for (int64_t c = 0; c < system->contact_count; c++) {
-        contact_add_to_bound(&system->contacts[c], mass);
+        contact_add_to_bound(&system->contacts[c], false, mass);
     }
     for (int64_t r = 0; r < system->penalties.rows.count; r++) {
         struct average average = constraint_rows_average(&system->penalties.rows, r);
