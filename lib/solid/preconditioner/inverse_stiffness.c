@@ -23,34 +23,43 @@ static const double ridge = 1e-9; /* on the diagonal of K_pp, by itself */
 static const double least_weight = 0.02;
 static const double least_share = 1e-6; /* least diagonal entry by a typical one */
 
-/* Rows of L or of K, by number. */
-struct lists {
-    int64_t *ptr;
-    int32_t *idx;
+/* Rows of L of all nodes, by their places in the body's order: MOST_ENTRIES of each. */
+struct padded {
+    int32_t *idx; /* places of lower nodes, and last, the node's own; then -1 */
+    float *block; /* dim * dim of each, by columns */
 };
-static void lists_free(struct lists *lists)
+static void padded_free(struct padded *rows)
 {
-    FREE_ALL(lists->ptr, lists->idx);
+    FREE_ALL(rows->idx, rows->block);
 }
 
-/* The nodes from `first` to before `last` in the body's order, whose rows of L are computed. All numbers are
- * places in that order. */
+static int64_t entries_of(const int32_t *pattern)
+{
+    int64_t count = 0;
+    while (count < MOST_ENTRIES && pattern[count] >= 0) {
+        count++;
+    }
+    return count;
+}
+
+/* Nodes whose rows of L are computed, in succession in the body's order. All numbers are places in that
+ * order.
+ */
 struct batch {
     const struct solid_system *system;
-    int64_t first, count;
-    struct lists pattern; /* of each: itself, last, and others */
-    struct lists needed;  /* of each node in a pattern: the columns of K that are needed, of lower place */
-    int32_t *row;         /* row_count: these nodes, ascending */
+    int64_t count;
+    const int32_t *pattern; /* of each: its entries in L */
+    int32_t *row;           /* row_count: the nodes in the patterns, ascending, whose rows of K are needed, */
     int64_t row_count;
+    int64_t *ptr;    /* row_count + 1: and which columns of each, */
+    int32_t *column; /* of lower place */
+    double *block;   /* dim * dim of each column */
     int32_t *number; /* of places: in row[], or -1 */
-    double *block;   /* dim * dim for each needed column */
     double least;    /* least diagonal entry */
 };
 static void batch_free(struct batch *batch)
 {
-    lists_free(&batch->pattern);
-    lists_free(&batch->needed);
-    FREE_ALL(batch->row, batch->number, batch->block);
+    FREE_ALL(batch->row, batch->ptr, batch->column, batch->block, batch->number);
 }
 
 /* Nodes near node i of lower number. */
@@ -83,10 +92,10 @@ static enum status add_around(const struct solid_system *system, int64_t i, int6
     return STATUS_OK;
 }
 
-/* The list of the row of place p, by distance: of the nodes around it and, in the plane, where supports are
- * narrow, of those around them. */
-static enum status choose(const struct solid_system *system, int64_t p, struct near *near, int32_t *list,
-                          int64_t *length, struct error *error)
+/* The pattern of the row of place p, by distance: of the nodes around it and, in the plane, where supports
+ * are narrow, of those around them. */
+static enum status choose(const struct solid_system *system, int64_t p, struct near *near, int32_t *pattern,
+                          struct error *error)
 {
     const struct neighbours *around = system->node_lists;
     int64_t i = system->body.order.nodes[p], kept = 0;
@@ -98,85 +107,60 @@ static enum status choose(const struct solid_system *system, int64_t p, struct n
     }
     qsort(near->list, (size_t)near->count, sizeof *near->list, compare_placed);
     for (; kept < near->count && kept < MOST_ENTRIES - 1; kept++) {
-        list[kept] = system->body.order.places[near->list[kept].item];
+        pattern[kept] = system->body.order.places[near->list[kept].item];
     }
-    list[kept] = (int32_t)p;
-    *length = kept + 1;
+    pattern[kept++] = (int32_t)p;
+    memset(pattern + kept, -1, (size_t)(MOST_ENTRIES - kept) * sizeof *pattern);
     return STATUS_OK;
 }
 
-static enum status choose_all(struct batch *batch, struct error *error)
+/* The columns that row `number` of K needs: of the patterns users[count] that its node is in. Returns how
+ * many; column: NULL, or these. */
+static int64_t list_columns(const struct batch *batch, const int32_t *users, int64_t count, int64_t number,
+                            int32_t *seen, int32_t *column)
 {
-    FREED_BY(near_free) struct near near = {0};
-    struct lists *pattern = &batch->pattern;
-    RETURN_IF_ERROR(NEW_ARRAY(&near.seen, batch->system->node_count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&pattern->ptr, batch->count + 1, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&pattern->idx, batch->count * MOST_ENTRIES, error));
-    for (int64_t k = 0; k < batch->count; k++) {
-        int64_t at = pattern->ptr[k], length;
-        RETURN_IF_ERROR(choose(batch->system, batch->first + k, &near, pattern->idx + at, &length, error));
-        pattern->ptr[k + 1] = at + length;
-    }
-    return STATUS_OK;
-}
-
-/* The columns that row `number` of K needs: of the patterns that its node is in. Returns how many; idx: NULL,
- * or these. */
-static int64_t list_columns(const struct batch *batch, const struct lists *users, int64_t number,
-                            int32_t *seen, int32_t *idx)
-{
-    int64_t count = 0;
-    for (int64_t u = users->ptr[number]; u < users->ptr[number + 1]; u++) {
-        int64_t k = users->idx[u];
-        for (int64_t e = batch->pattern.ptr[k]; e < batch->pattern.ptr[k + 1]; e++) {
-            int32_t q = batch->pattern.idx[e];
-            if (q <= batch->row[number] && seen[q] != number + 1) {
-                seen[q] = (int32_t)number + 1;
-                if (idx != NULL) {
-                    idx[count] = q;
-                }
-                count++;
+    int64_t columns = 0;
+    for (int64_t e = 0; e < count * MOST_ENTRIES; e++) {
+        int32_t q = batch->pattern[users[e / MOST_ENTRIES] * MOST_ENTRIES + e % MOST_ENTRIES];
+        if (q >= 0 && q <= batch->row[number] && seen[q] != number + 1) {
+            seen[q] = (int32_t)number + 1;
+            if (column != NULL) {
+                column[columns] = q;
             }
+            columns++;
         }
     }
-    return count;
+    return columns;
 }
 
 /* List the rows of K and their columns. */
 static enum status list_rows(struct batch *batch, struct error *error)
 {
-    int64_t nodes = batch->system->node_count, entries = batch->pattern.ptr[batch->count];
-    FREED_BY(lists_free) struct lists users = {0};
-    NEW_SCRATCH(int64_t, next, nodes + 1, error);
+    int64_t nodes = batch->system->node_count;
+    SCRATCH int64_t *ptr = NULL;
+    SCRATCH int32_t *users = NULL;
     NEW_SCRATCH(int32_t, seen, nodes, error);
     RETURN_IF_ERROR(NEW_ARRAY(&batch->number, nodes, error));
     RETURN_IF_ERROR(NEW_ARRAY(&batch->row, nodes, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&users.ptr, nodes + 1, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&users.idx, entries, error));
-    for (int64_t i = 0; i < entries; i++) {
-        next[batch->pattern.idx[i]]++;
-    }
+    RETURN_IF_ERROR(lists_by_row(batch->count, MOST_ENTRIES, batch->pattern, nodes, &ptr, &users, error));
     for (int64_t p = 0; p < nodes; p++) {
-        batch->number[p] = next[p] > 0 ? (int32_t)batch->row_count : -1;
-        if (next[p] > 0) {
-            users.ptr[batch->row_count + 1] = users.ptr[batch->row_count] + next[p];
+        batch->number[p] = ptr[p + 1] > ptr[p] ? (int32_t)batch->row_count : -1;
+        if (ptr[p + 1] > ptr[p]) {
             batch->row[batch->row_count++] = (int32_t)p;
         }
     }
-    memcpy(next, users.ptr, (size_t)batch->row_count * sizeof *next);
-    for (int64_t k = 0; k < batch->count; k++) {
-        for (int64_t e = batch->pattern.ptr[k]; e < batch->pattern.ptr[k + 1]; e++) {
-            users.idx[next[batch->number[batch->pattern.idx[e]]]++] = (int32_t)k;
+    RETURN_IF_ERROR(NEW_ARRAY(&batch->ptr, batch->row_count + 1, error));
+    for (int pass = 0; pass < 2; pass++) {
+        memset(seen, 0, (size_t)nodes * sizeof *seen);
+        for (int64_t r = 0; r < batch->row_count; r++) {
+            const int64_t *of = ptr + batch->row[r];
+            int32_t *column = pass == 0 ? NULL : batch->column + batch->ptr[r];
+            batch->ptr[r + 1] =
+                batch->ptr[r] + list_columns(batch, users + of[0], of[1] - of[0], r, seen, column);
         }
-    }
-    RETURN_IF_ERROR(NEW_ARRAY(&batch->needed.ptr, batch->row_count + 1, error));
-    for (int64_t r = 0; r < batch->row_count; r++) {
-        batch->needed.ptr[r + 1] = batch->needed.ptr[r] + list_columns(batch, &users, r, seen, NULL);
-    }
-    memset(seen, 0, (size_t)nodes * sizeof *seen);
-    RETURN_IF_ERROR(NEW_ARRAY(&batch->needed.idx, batch->needed.ptr[batch->row_count], error));
-    for (int64_t r = 0; r < batch->row_count; r++) {
-        (void)list_columns(batch, &users, r, seen, batch->needed.idx + batch->needed.ptr[r]);
+        if (pass == 0) {
+            RETURN_IF_ERROR(NEW_ARRAY(&batch->column, batch->ptr[batch->row_count], error));
+        }
     }
     return STATUS_OK;
 }
@@ -187,7 +171,7 @@ static enum status make_rows(struct batch *batch, struct stiffness_rows *rows, s
     int64_t values = batch->system->dim * batch->system->dim;
     struct first_failure failure = {STATUS_OK};
     RETURN_IF_ERROR(stiffness_rows_prepare(rows, batch->row, batch->row_count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&batch->block, batch->needed.ptr[batch->row_count] * values, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&batch->block, batch->ptr[batch->row_count] * values, error));
 #pragma omp parallel num_threads(chunks_of(batch->row_count, NODES_FOR_THREAD).threads)
     {
         struct stiffness_row row;
@@ -196,9 +180,9 @@ static enum status make_rows(struct batch *batch, struct stiffness_rows *rows, s
 #pragma omp for schedule(dynamic, ROWS_AT_ONCE)
         for (int64_t r = 0; r < batch->row_count; r++) {
             if (made == STATUS_OK) {
-                int64_t at = batch->needed.ptr[r];
-                stiffness_row_make(rows, batch->row[r], batch->needed.ptr[r + 1] - at, batch->needed.idx + at,
-                                   &row, batch->block + at * values);
+                int64_t at = batch->ptr[r];
+                stiffness_row_make(rows, batch->row[r], batch->ptr[r + 1] - at, batch->column + at, &row,
+                                   batch->block + at * values);
             }
         }
         stiffness_row_free(&row);
@@ -217,8 +201,8 @@ static void take_matrix(const struct batch *batch, int64_t count, const int32_t 
     }
     for (int64_t k = 0; k < count; k++) {
         int32_t r = batch->number[list[k]];
-        for (int64_t e = batch->needed.ptr[r]; e < batch->needed.ptr[r + 1]; e++) {
-            int64_t other = at[batch->needed.idx[e]];
+        for (int64_t e = batch->ptr[r]; e < batch->ptr[r + 1]; e++) {
+            int64_t other = at[batch->column[e]];
             const double *block = batch->block + e * dim * dim;
             for (int64_t v = 0; v < dim * dim && other >= 0; v++) {
                 int64_t i = k * dim + v / dim, j = other * dim + v % dim;
@@ -253,8 +237,8 @@ static void solve_rows(int64_t dim, int64_t size, const double *matrix, double *
 static void solve_row(const struct batch *batch, int64_t k, int32_t *at, float *block)
 {
     double matrix[MOST_SIZE * MOST_SIZE], x[3 * MOST_SIZE];
-    const int32_t *list = batch->pattern.idx + batch->pattern.ptr[k];
-    int64_t count = batch->pattern.ptr[k + 1] - batch->pattern.ptr[k], dim = batch->system->dim;
+    const int32_t *list = batch->pattern + k * MOST_ENTRIES;
+    int64_t count = entries_of(list), dim = batch->system->dim;
     int64_t size = count * dim;
     memset(matrix, 0, (size_t)(size * size) * sizeof *matrix);
     take_matrix(batch, count, list, at, matrix);
@@ -282,75 +266,53 @@ static enum status solve_all(const struct batch *batch, float *block, struct err
     memset(at, -1, (size_t)(nodes * threads) * sizeof *at);
 #pragma omp parallel for schedule(dynamic, ROWS_AT_ONCE) num_threads(threads)
     for (int64_t k = 0; k < batch->count; k++) {
-        solve_row(batch, k, at + omp_get_thread_num() * nodes, block + batch->pattern.ptr[k] * values);
+        solve_row(batch, k, at + omp_get_thread_num() * nodes, block + k * MOST_ENTRIES * values);
     }
     return STATUS_OK;
 }
 
-/* The rows of the nodes from `first` to before `last` follow those before them. */
+/* Compute the rows of the nodes from `first` to before `last`. */
 static enum status make_batch(struct stiffness_rows *rows, int64_t first, int64_t last, double least,
-                              struct block_rows *to, struct error *error)
+                              struct padded *to, struct error *error)
 {
     const struct solid_system *system = rows->system;
+    FREED_BY(near_free) struct near near = {0};
     FREED_BY(batch_free)
-    struct batch batch = {.system = system, .first = first, .count = last - first, .least = least};
-    RETURN_IF_ERROR(choose_all(&batch, error));
+    struct batch batch = {
+        .system = system, .count = last - first, .pattern = to->idx + first * MOST_ENTRIES, .least = least};
+    RETURN_IF_ERROR(NEW_ARRAY(&near.seen, system->node_count, error));
+    for (int64_t p = first; p < last; p++) {
+        RETURN_IF_ERROR(choose(system, p, &near, to->idx + p * MOST_ENTRIES, error));
+    }
     RETURN_IF_ERROR(list_rows(&batch, error));
     RETURN_IF_ERROR(make_rows(&batch, rows, error));
-    int64_t at = to->ptr[first], values = system->dim * system->dim;
-    for (int64_t p = first; p < last; p++) {
-        to->ptr[p + 1] = at + batch.pattern.ptr[p - first + 1];
-    }
-    for (int64_t e = 0; e < batch.pattern.ptr[batch.count]; e++) {
-        to->idx[at + e] = (int32_t)system->body.order.nodes[batch.pattern.idx[e]];
-    }
-    return solve_all(&batch, to->block + at * values, error);
+    return solve_all(&batch, to->block + first * MOST_ENTRIES * system->dim * system->dim, error);
 }
 
-/* Give the rows of all processes to all, by the nodes' numbers. */
-static enum status gather_rows(const struct body *body, struct block_rows *by_place, struct block_rows *rows,
-                               struct error *error)
+/* The rows of all processes, by the nodes' numbers. */
+static enum status gather_rows(const struct body *body, const struct padded *by_place,
+                               struct block_rows *rows, struct error *error)
 {
     const struct body_share *share = &body->share;
-    int64_t nodes = body->node_count, values = body->dim * body->dim, entries = 0;
-    int count = ranks_count(share->ranks);
-    NEW_SCRATCH(int64_t, length, nodes, error);
-    NEW_SCRATCH(int64_t, first, count + 1, error);
-    for (int64_t p = share->begin_node; p < share->end_node; p++) {
-        length[p] = by_place->ptr[p + 1] - by_place->ptr[p];
-    }
-    int64_t from = by_place->ptr[share->begin_node];
-    ranks_gather(share->ranks, length, sizeof *length, share->node_first);
-    by_place->ptr[0] = 0;
-    for (int64_t p = 0; p < nodes; p++) {
-        by_place->ptr[p + 1] = by_place->ptr[p] + length[p];
-    }
-    int64_t to = by_place->ptr[share->begin_node], own = by_place->ptr[share->end_node] - to;
-    memmove(by_place->idx + to, by_place->idx + from, (size_t)own * sizeof *by_place->idx);
-    memmove(by_place->block + to * values, by_place->block + from * values,
-            (size_t)(own * values) * sizeof *by_place->block);
-    for (int r = 0; r <= count; r++) {
-        first[r] = by_place->ptr[share->node_first[r]];
-    }
-    ranks_gather(share->ranks, by_place->idx, sizeof *by_place->idx, first);
-    ranks_gather(share->ranks, by_place->block, (size_t)values * sizeof *by_place->block, first);
-    entries = by_place->ptr[nodes];
+    int64_t nodes = body->node_count, values = body->dim * body->dim;
+    ranks_gather(share->ranks, by_place->idx, MOST_ENTRIES * sizeof *by_place->idx, share->node_first);
+    ranks_gather(share->ranks, by_place->block, (size_t)(MOST_ENTRIES * values) * sizeof *by_place->block,
+                 share->node_first);
     RETURN_IF_ERROR(NEW_ARRAY(&rows->ptr, nodes + 1, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&rows->idx, entries, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&rows->block, entries * values, error));
     for (int64_t n = 0; n < nodes; n++) {
-        int64_t p = body->order.places[n], at = by_place->ptr[p];
-        rows->ptr[n + 1] = rows->ptr[n] + length[p];
-        memcpy(rows->idx + rows->ptr[n], by_place->idx + at, (size_t)length[p] * sizeof *rows->idx);
-        memcpy(rows->block + rows->ptr[n] * values, by_place->block + at * values,
-               (size_t)(length[p] * values) * sizeof *rows->block);
+        rows->ptr[n + 1] = rows->ptr[n] + entries_of(by_place->idx + body->order.places[n] * MOST_ENTRIES);
+    }
+    RETURN_IF_ERROR(NEW_ARRAY(&rows->idx, rows->ptr[nodes], error));
+    RETURN_IF_ERROR(NEW_ARRAY(&rows->block, rows->ptr[nodes] * values, error));
+    for (int64_t n = 0; n < nodes; n++) {
+        int64_t from = body->order.places[n] * MOST_ENTRIES, to = rows->ptr[n], count = rows->ptr[n + 1] - to;
+        for (int64_t e = 0; e < count; e++) {
+            rows->idx[to + e] = (int32_t)body->order.nodes[by_place->idx[from + e]];
+        }
+        memcpy(rows->block + to * values, by_place->block + from * values,
+               (size_t)(count * values) * sizeof *rows->block);
     }
     return STATUS_OK;
-}
-
-static void block_rows_drop(struct block_rows *rows)
-{
-    FREE_ALL(rows->ptr, rows->idx, rows->block);
 }
 
 enum status inverse_stiffness_factor(const struct solid_system *system, struct inverse_factor *factor,
@@ -365,11 +327,10 @@ enum status inverse_stiffness_factor_by(const struct solid_system *system, int64
 {
     const struct body_share *share = &system->body.share;
     FREED_BY(stiffness_rows_free) struct stiffness_rows rows = {0};
-    FREED_BY(block_rows_drop) struct block_rows by_place = {0};
+    FREED_BY(padded_free) struct padded by_place = {0};
     int64_t nodes = system->node_count, values = system->dim * system->dim;
     double least = 0.0;
     *factor = (struct inverse_factor){.ranks = share->ranks, .node_count = nodes, .dim = system->dim};
-    RETURN_IF_ERROR(NEW_ARRAY(&by_place.ptr, nodes + 1, error));
     RETURN_IF_ERROR(NEW_ARRAY(&by_place.idx, nodes * MOST_ENTRIES, error));
     RETURN_IF_ERROR(NEW_ARRAY(&by_place.block, nodes * MOST_ENTRIES * values, error));
     NEW_SCRATCH(double, diagonal, nodes, error);
