@@ -29,7 +29,7 @@ static struct bound bound_at(const struct body *body, int64_t q, bool rest)
     const struct material *material = &body->materials[body->material[q]];
     struct bound bound = {.smoothing = 0.0};
     double F[9], J, bulk = material->bulk_modulus;
-    stress_matrix(body->dim, body->F + q, body->point_count, F);
+    stress_gradient(body, q, F);
     J = determinant(F);
     if (rest || !(J > 0.0 && isfinite(J))) { /* inverted: the bounds stay positive until the run stops */
         J = 1.0;

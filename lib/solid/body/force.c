@@ -44,18 +44,6 @@ static void stress_point_block(struct body *body, int64_t b)
     force_point_forces(body, b, (const double(*)[BLOCK_MOST_POINTS])P);
 }
 
-void body_visit(const struct body *body, int64_t first, int64_t last, body_visitor *visit, void *context)
-{
-    for (int64_t b = first; b < last; b++) {
-        const struct block *block = &body->blocks[b];
-        for (int64_t q = block->first_point; q < block->first_point + block->point_count; q++) {
-            double F[9];
-            stress_matrix(body->dim, body->F + q, body->point_count, F);
-            visit(body, q, F, body->J[q], context);
-        }
-    }
-}
-
 /* y = B x for own rows, by all threads of a parallel region. */
 static void apply(const struct body *body, const double *x, double *y)
 {
@@ -220,35 +208,30 @@ double body_volume(const struct body *body)
     return volume;
 }
 
-/* Add the energies of a point to its block's. */
-static void add_energy(const struct body *body, int64_t q, const double F[9], double J, void *context)
+/* The elastic energy of a point; *dissipated: see prony_energy. */
+static double point_energy(const struct body *body, const struct block *block, int64_t q, double *dissipated)
 {
     const struct material *material = &body->materials[body->material[q]];
-    struct block *block = context;
+    double F[9], J = body->J[q];
+    stress_gradient(body, q, F);
     double W = material_isochoric_energy(material, F), active = stress_active_energy(body, q, F);
     double coupling = stress_coupling_energy(body, q, F, J);
     double varying = body->smoothed ? stress_variance_energy(body, q) : 0.0;
     if (block->relaxes) {
         double whole = body->weight[q] * (W + coupling) + varying;
-        varying = prony_energy(body, q, whole, varying, &block->dissipated);
+        varying = prony_energy(body, q, whole, varying, dissipated);
         W = coupling = 0.0;
     }
     double sum = W + active;
     sum += coupling;
     sum += body->averaged ? nodal_volume_energy(body, q) : material_volume_energy(material, J);
-    block->energy += body->weight[q] * sum + varying;
+    return body->weight[q] * sum + varying;
 }
 
-double body_energy(struct body *body, const double *u)
+/* The sum of the energies of all blocks, of which each process has its own. */
+static double sum_blocks(struct body *body)
 {
     double energy = 0.0;
-#pragma omp parallel num_threads(body->threads)
-    set_state(body, u);
-#pragma omp parallel for schedule(static) num_threads(body->threads)
-    for (int64_t b = body->share.begin_block; b < body->share.end_block; b++) {
-        body->blocks[b].energy = body->blocks[b].dissipated = 0.0;
-        body_visit(body, b, b + 1, add_energy, &body->blocks[b]);
-    }
     ranks_gather(body->share.ranks, body->blocks, sizeof *body->blocks, body->share.block_first);
     body->prony.dissipated = 0.0;
     for (int64_t b = 0; b < body->block_count; b++) {
@@ -258,33 +241,34 @@ double body_energy(struct body *body, const double *u)
     return energy;
 }
 
-/* The active energies of one load curve. */
-struct active_sum {
-    int32_t curve;
-    double energy;
-};
-
-static void add_active_energy(const struct body *body, int64_t q, const double F[9], double J, void *context)
+double body_energy(struct body *body, const double *u)
 {
-    struct active_sum *sum = context;
-    (void)J;
-    if (body->materials[body->material[q]].active_curve == sum->curve) {
-        sum->energy += body->weight[q] * stress_whole_active_energy(body, q, F);
+#pragma omp parallel num_threads(body->threads)
+    set_state(body, u);
+#pragma omp parallel for schedule(static) num_threads(body->threads)
+    for (int64_t b = body->share.begin_block; b < body->share.end_block; b++) {
+        struct block *block = &body->blocks[b];
+        block->energy = block->dissipated = 0.0;
+        for (int64_t q = block->first_point; q < block->first_point + block->point_count; q++) {
+            block->energy += point_energy(body, block, q, &block->dissipated);
+        }
     }
+    return sum_blocks(body);
 }
 
 double body_active_energy(struct body *body, int32_t curve)
 {
-    double energy = 0.0;
 #pragma omp parallel for schedule(static) num_threads(body->threads)
     for (int64_t b = body->share.begin_block; b < body->share.end_block; b++) {
-        struct active_sum sum = {curve, 0.0};
-        body_visit(body, b, b + 1, add_active_energy, &sum);
-        body->blocks[b].energy = sum.energy;
+        struct block *block = &body->blocks[b];
+        block->energy = 0.0;
+        for (int64_t q = block->first_point; q < block->first_point + block->point_count; q++) {
+            double F[9];
+            if (body->materials[body->material[q]].active_curve == curve) {
+                stress_gradient(body, q, F);
+                block->energy += body->weight[q] * stress_whole_active_energy(body, q, F);
+            }
+        }
     }
-    ranks_gather(body->share.ranks, body->blocks, sizeof *body->blocks, body->share.block_first);
-    for (int64_t b = 0; b < body->block_count; b++) {
-        energy += body->blocks[b].energy;
-    }
-    return energy;
+    return sum_blocks(body);
 }

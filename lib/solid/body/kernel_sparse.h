@@ -53,12 +53,12 @@
             }                                                                                                \
         }                                                                                                    \
     }                                                                                                        \
-    KERNEL_INLINE void sum_parts_##dim(struct field_averages *averages, int64_t begin, int64_t end)           \
+    KERNEL_INLINE void sum_parts_##dim(struct field_averages *averages, int64_t begin, int64_t end)          \
     {                                                                                                        \
         for (int64_t r = begin; r < end; r++) {                                                              \
             vector sum = {0.0}, force;                                                                       \
-            for (int64_t i = averages->part_ptr[r]; i < averages->part_ptr[r + 1]; i++) {                      \
-                LOAD(force, averages->part_force + (int64_t)averages->part[i] * (dim));                        \
+            for (int64_t i = averages->part_ptr[r]; i < averages->part_ptr[r + 1]; i++) {                    \
+                LOAD(force, averages->part_force + (int64_t)averages->part[i] * (dim));                      \
                 sum += force;                                                                                \
             }                                                                                                \
             STORE(averages->force + r * VECTOR_STRIDE(dim), sum);                                            \

@@ -185,16 +185,16 @@ double prony_energy(const struct body *body, int64_t q, double W, double W_v, do
     return share * W + stored;
 }
 
-/* Of a jump, which is from rest: the work of the terms is their share of the energy. */
-static void accept_jump(const struct body *body, int64_t q, const double F[9], double J, void *context)
+/* Of point q in a jump, which is from rest: the work of the terms is their share of the energy. */
+static double jump_work(const struct body *body, int64_t q)
 {
     const struct material *material = &body->materials[body->material[q]];
-    double W =
-        body->weight[q] * (material_isochoric_energy(material, F) + stress_coupling_energy(body, q, F, J));
-    (void)context;
+    double F[9];
+    stress_gradient(body, q, F);
+    double coupling = stress_coupling_energy(body, q, F, body->J[q]);
+    double W = body->weight[q] * (material_isochoric_energy(material, F) + coupling);
     W += body->smoothed ? stress_variance_energy(body, q) : 0.0;
-    body->prony.history[(rows_of(body) - 1) * body->point_count + q] =
-        (1.0 - step_of(material, INFINITY).factor) * W;
+    return (1.0 - step_of(material, INFINITY).factor) * W;
 }
 
 /* The state of a block evaluated last becomes its history. The work of the terms is that of their mean. */
@@ -222,6 +222,9 @@ static void accept_block(const struct body *body, int64_t b)
             *before = X[c][i];
         }
     }
+    for (int64_t i = 0; i < block->point_count && !(prony->step > 0.0); i++) {
+        work[i] = jump_work(body, block->first_point + i);
+    }
 }
 
 void body_accept(struct body *body)
@@ -238,9 +241,6 @@ void body_accept(struct body *body)
         if (body->blocks[b].relaxes) {
             accept_block(body, b);
             set_block_rest(body, &body->blocks[b]);
-            if (!(prony->step > 0.0)) {
-                body_visit(body, b, b + 1, accept_jump, NULL);
-            }
         }
     }
     prony->rest_step = prony->step;

@@ -26,6 +26,11 @@ void stress_matrix(int dim, const double *row, int64_t apart, double F[9])
     }
 }
 
+void stress_gradient(const struct body *body, int64_t q, double F[9])
+{
+    stress_matrix(body->dim, body->F + q, body->point_count, F);
+}
+
 /* The active stress T of a point, Pa. */
 static double active_stress(const struct body *body, const struct material *material)
 {
@@ -159,7 +164,7 @@ void stress_points(const struct body *body, const struct block *block, block_row
     for (int64_t i = 0; i < block->point_count; i++) {
         double F[9], stress[9];
         int64_t q = block->first_point + i;
-        stress_matrix(body->dim, body->F + q, body->point_count, F);
+        stress_gradient(body, q, F);
         point_stress(body, q, F, body->J[q], stress);
         put(body, q, i, stress, P);
     }
@@ -222,7 +227,7 @@ double stress_coupling_energy(const struct body *body, int64_t point, const doub
 static void cell_stress(const struct body *body, int64_t q, double P[9], double T[9])
 {
     double F[9], H[9], C[9], D[9], along[9], coupled[9];
-    stress_matrix(body->dim, body->F + q, body->point_count, F);
+    stress_gradient(body, q, F);
     stress_matrix(body->dim, body->cells.interpolant + q, body->point_count, H);
     vector_subtract(9, H, F, D);
     double pressure = point_pressure(body, q, body->J[q]);
@@ -259,56 +264,35 @@ static void cauchy_part(const struct body *body, int64_t q, const double F[9], c
     }
 }
 
-static void put_stress(const struct body *body, int64_t q, const double F[9], double J, void *stress)
-{
-    double *P = (double *)stress + body->order.points[q] * 9, T[9];
-    if (!body->smoothed) {
-        point_stress(body, q, F, J, P);
-        return;
-    }
-    cell_stress(body, q, P, T);
-    cauchy_part(body, q, F, T, P);
-}
-
 void body_stress(struct body *body, double *stress)
 {
     body_share_collect(body);
     prony_prepare(body, true);
-    body_visit(body, 0, body->block_count, put_stress, stress);
-}
-
-static void put_gradient(const struct body *body, int64_t q, const double F[9], double J, void *gradient)
-{
-    (void)J;
-    memcpy((double *)gradient + body->order.points[q] * 9, F, 9 * sizeof *F);
+    for (int64_t q = 0; q < body->point_count; q++) {
+        double *P = stress + body->order.points[q] * 9, F[9], T[9];
+        stress_gradient(body, q, F);
+        if (body->smoothed) {
+            cell_stress(body, q, P, T);
+            cauchy_part(body, q, F, T, P);
+        } else {
+            point_stress(body, q, F, body->J[q], P);
+        }
+    }
 }
 
 void body_gradient(struct body *body, double *gradient)
 {
     body_share_collect(body);
-    body_visit(body, 0, body->block_count, put_gradient, gradient);
-}
-
-static void put_volume_ratio(const struct body *body, int64_t q, const double F[9], double J, void *ratio)
-{
-    (void)F;
-    ((double *)ratio)[body->order.points[q]] = J;
+    for (int64_t q = 0; q < body->point_count; q++) {
+        stress_gradient(body, q, gradient + body->order.points[q] * 9);
+    }
 }
 
 void body_volume_ratio(struct body *body, double *ratio)
 {
     body_share_collect(body);
-    body_visit(body, 0, body->block_count, put_volume_ratio, ratio);
-}
-
-static void add_inelliptic(const struct body *body, int64_t q, const double F[9], double J, void *sum)
-{
-    struct inelliptic *found = sum;
-    (void)J;
-    const struct material *material = &body->materials[body->material[q]];
-    if (!material_is_elliptic(material, active_stress(body, material), body->dim, F)) {
-        found->share += body->weight[q];
-        found->point = found->point < 0 ? body->order.points[q] : found->point;
+    for (int64_t q = 0; q < body->point_count; q++) {
+        ratio[body->order.points[q]] = body->J[q];
     }
 }
 
@@ -316,7 +300,15 @@ struct inelliptic body_inelliptic(struct body *body)
 {
     struct inelliptic found = {0.0, -1};
     body_share_collect(body);
-    body_visit(body, 0, body->block_count, add_inelliptic, &found);
+    for (int64_t q = 0; q < body->point_count; q++) {
+        const struct material *material = &body->materials[body->material[q]];
+        double F[9];
+        stress_gradient(body, q, F);
+        if (!material_is_elliptic(material, active_stress(body, material), body->dim, F)) {
+            found.share += body->weight[q];
+            found.point = found.point < 0 ? body->order.points[q] : found.point;
+        }
+    }
     found.share /= body_volume(body);
     return found;
 }

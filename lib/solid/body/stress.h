@@ -3,9 +3,8 @@
 
 #include "solid/body/kernel.h"
 
-/* Visit the points of blocks first .. last - 1 with F and J at the last evaluation. */
-typedef void body_visitor(const struct body *body, int64_t point, const double F[9], double J, void *context);
-void body_visit(const struct body *body, int64_t first, int64_t last, body_visitor *visit, void *context);
+/* F of point q at the last evaluation. */
+void stress_gradient(const struct body *body, int64_t q, double F[9]);
 
 /* F[9]: the matrix of a point from rows with the stride `apart`; in plane strain F33 = 1. */
 void stress_matrix(int dim, const double *row, int64_t apart, double F[9]);
