@@ -30,8 +30,6 @@ static int model_of(const struct body_input *input, int64_t point)
  * that blocks are compact; order the nodes along the curve, too. */
 static enum status order_all(const struct body_input *input, struct body *body, struct error *error)
 {
-    SCRATCH int64_t *root = NULL;
-    SCRATCH double *kept = NULL;
     NEW_SCRATCH(int32_t, model, input->point_count, error);
     RETURN_IF_ERROR(NEW_ARRAY(&body->order.points, input->point_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&body->order.nodes, body->node_count, error));
@@ -42,10 +40,7 @@ static enum status order_all(const struct body_input *input, struct body *body, 
     RETURN_IF_ERROR(
         renumber_morton(body->dim, input->point_count, input->x, model, body->order.points, error));
     if (body->smoothed) {
-        RETURN_IF_ERROR(NEW_ARRAY(&root, input->point_count, error));
-        RETURN_IF_ERROR(merged_cells_find(input, root, error));
-        RETURN_IF_ERROR(merged_cells_join(input, root, &kept, error));
-        RETURN_IF_ERROR(merged_cells_order(root, kept, body, error));
+        RETURN_IF_ERROR(merged_cells_build(input, body, error));
     }
     RETURN_IF_ERROR(
         renumber_morton(body->dim, body->node_count, input->cells.x, NULL, body->order.nodes, error));

@@ -2,6 +2,7 @@
  * process, over the points in their order. */
 #include "base/chunks.h"
 #include "base/vector.h"
+#include "solid/body/merged_cells.h"
 #include "solid/body/stress.h"
 
 #include <math.h>
@@ -63,25 +64,14 @@ static double bound_of_node(const struct body *body, int64_t node, bool rest)
 {
     const struct field_averages *averages = &body->cells.averages;
     int64_t row = averages->row_count - body->node_count + node;
-    int dim = body->dim;
+    struct domain domain;
     double sum = 0.0;
     for (int64_t i = averages->use_ptr[row]; i < averages->use_ptr[row + 1]; i++) {
-        int64_t q = field_averages_cell(averages, dim, averages->use[i]);
-        int64_t first = smoothed_cells_group(body, q), end = smoothed_cells_group_end(body, q);
-        double g[3] = {0.0}, gradient[12];
-        bool seen = false;
-        for (int64_t c = first; c < end; c++) {
-            smoothed_cells_linear_gradients(body, c, gradient);
-            for (int k = 0; k <= dim; k++) {
-                if (smoothed_cells_node(body, c, k) == node) {
-                    seen = seen || c < q;
-                    add_scaled(dim, smoothed_cells_share(body, c), gradient + k * dim, g);
-                }
-            }
-        }
-        for (int64_t c = first; c < end && !seen; c++) {
+        int64_t q = field_averages_cell(averages, body->dim, averages->use[i]);
+        int n = merged_cells_domain(body, q, (int32_t)node, &domain);
+        for (int64_t c = domain.first; c < domain.end && n >= 0; c++) {
             struct bound bound = bound_at(body, c, rest);
-            sum += bound_along(&bound, dim, g);
+            sum += bound_along(&bound, body->dim, domain.gradient[n]);
         }
     }
     return sum;

@@ -2,6 +2,7 @@
 
 #include "approx/cells/quality.h"
 #include "base/memory.h"
+#include "base/vector.h"
 #include "solid/body/stress.h"
 
 #include <math.h>
@@ -41,7 +42,9 @@ static int64_t end_of(const double *volume, const int64_t *partner, int64_t cell
     return cell;
 }
 
-enum status merged_cells_find(const struct body_input *input, int64_t *root, struct error *error)
+/* root[point_count]: for each of the caller's cells a cell that represents those it is merged with; itself if
+ * it is alone. */
+static enum status find_merged(const struct body_input *input, int64_t *root, struct error *error)
 {
     const struct faces *faces = input->faces;
     const struct cells *cells = &input->cells;
@@ -74,28 +77,29 @@ enum status merged_cells_find(const struct body_input *input, int64_t *root, str
     return STATUS_OK;
 }
 
-enum status merged_cells_join(const struct body_input *input, int64_t *root, double **kept,
-                              struct error *error)
+/* Let cells at a junction that are alone, of one part of it, of one region and law, have one root as well.
+ * kept[point_count]: k of each cell, 1 of those that are alone. */
+static enum status join_junctions(const struct body_input *input, int64_t *root, double *kept,
+                                  struct error *error)
 {
     int32_t parts = 0;
     int64_t cells = input->point_count;
     SCRATCH int64_t *last = NULL; /* of each part of the junction: its last root, from 1 on; 0: none */
     NEW_SCRATCH(int64_t, before, cells, error); /* of such a root: the one before it */
     NEW_SCRATCH(int64_t, size, cells, error);
-    RETURN_IF_ERROR(NEW_ARRAY(kept, cells, error));
     for (int64_t c = 0; c < cells; c++) {
         size[root[c]]++;
     }
     for (int64_t c = 0; c < cells; c++) {
         bool alone = size[root[c]] == 1;
-        (*kept)[c] = alone ? 1.0 : 0.0;
+        kept[c] = alone ? 1.0 : 0.0;
         parts =
             alone && input->junction != NULL && input->junction[c] >= parts ? input->junction[c] + 1 : parts;
     }
     RETURN_IF_ERROR(NEW_ARRAY(&last, parts, error));
     for (int64_t c = 0; c < cells && parts > 0; c++) {
         int32_t part = input->junction[c];
-        if (part < 0 || (*kept)[c] < 1.0) {
+        if (part < 0 || kept[c] < 1.0) {
             continue;
         }
         int64_t to = last[part];
@@ -108,14 +112,15 @@ enum status merged_cells_join(const struct body_input *input, int64_t *root, dou
         } else {
             root[c] = to - 1;
             size[to - 1]++;
-            (*kept)[c] = (*kept)[to - 1] = JUNCTION_KEPT;
+            kept[c] = kept[to - 1] = JUNCTION_KEPT;
         }
     }
     return STATUS_OK;
 }
 
-enum status merged_cells_order(const int64_t *root, const double *kept, struct body *body,
-                               struct error *error)
+/* Reorder the body's points so that the members of a group are consecutive, and list the groups. */
+static enum status order_groups(const int64_t *root, const double *kept, struct body *body,
+                                struct error *error)
 {
     struct smoothed_cells *smoothed = &body->cells;
     int64_t cells = body->point_count, at = 0, grouped = 0;
@@ -160,6 +165,48 @@ enum status merged_cells_order(const int64_t *root, const double *kept, struct b
         }
     }
     return STATUS_OK;
+}
+
+enum status merged_cells_build(const struct body_input *input, struct body *body, struct error *error)
+{
+    NEW_SCRATCH(int64_t, root, body->point_count, error);
+    NEW_SCRATCH(double, kept, body->point_count, error);
+    RETURN_IF_ERROR(find_merged(input, root, error));
+    RETURN_IF_ERROR(join_junctions(input, root, kept, error));
+    return order_groups(root, kept, body, error);
+}
+
+int merged_cells_domain(const struct body *body, int64_t q, int32_t node, struct domain *domain)
+{
+    int dim = body->dim, number = -1;
+    double gradient[12];
+    domain->first = smoothed_cells_group(body, q);
+    domain->end = smoothed_cells_group_end(body, q);
+    domain->count = 0;
+    domain->weight = 0.0;
+    for (int64_t c = domain->first; c < domain->end; c++) {
+        domain->weight += body->weight[c];
+    }
+    for (int64_t c = domain->first; c < domain->end; c++) {
+        smoothed_cells_linear_gradients(body, c, gradient);
+        for (int k = 0; k <= dim; k++) {
+            int32_t own = smoothed_cells_node(body, c, k);
+            int at = 0;
+            while (at < domain->count && domain->node[at] != own) {
+                at++;
+            }
+            if (at == domain->count) {
+                domain->node[domain->count++] = own;
+                memset(domain->gradient[at], 0, sizeof domain->gradient[at]);
+            }
+            if (own == node && c < q) {
+                return -1;
+            }
+            number = own == node ? at : number;
+            add_scaled(dim, body->weight[c] / domain->weight, gradient + k * dim, domain->gradient[at]);
+        }
+    }
+    return number;
 }
 
 /* Replace the rows of a group of cells by what they keep and the rest of their mean, or by what they keep and

@@ -23,18 +23,22 @@ enum { MERGED_MOST_CELLS = 16, GROUP_MOST_CELLS = 32 };
 /* k of cells at a junction. */
 #define JUNCTION_KEPT 0.8
 
-/* root[point_count]: for each of the caller's cells a cell that represents those it is merged with; itself if
- * it is alone. */
-MUST_CHECK enum status merged_cells_find(const struct body_input *input, int64_t *root, struct error *error);
-
-/* Let cells at a junction that are alone, of one part of it, of one region and law, have one root as well.
- * (*kept)[point_count], to be freed: k of each cell, 1 of those that are alone. */
-MUST_CHECK enum status merged_cells_join(const struct body_input *input, int64_t *root, double **kept,
-                                         struct error *error);
-
-/* Reorder the body's points so that the members of a group are consecutive, and list the groups. */
-MUST_CHECK enum status merged_cells_order(const int64_t *root, const double *kept, struct body *body,
+/* Find the groups, reorder the body's points so that the members of each are consecutive, and list them. */
+MUST_CHECK enum status merged_cells_build(const struct body_input *input, struct body *body,
                                           struct error *error);
+
+/* Cells that are merged are one domain, with the mean gradients of their linear shape functions. */
+struct domain {
+    int64_t first, end; /* cells in the body's order */
+    double weight;      /* m3 (2D: m2) */
+    int count;
+    int32_t node[4 * MERGED_MOST_CELLS];       /* in the body's order */
+    double gradient[4 * MERGED_MOST_CELLS][3]; /* 1/m */
+};
+
+/* The domain of cell q, which has this node. Returns the number of the node's function; or -1 where a cell of
+ * the domain before q has the node, too. */
+int merged_cells_domain(const struct body *body, int64_t q, int32_t node, struct domain *domain);
 
 /* Replace the rows of F and F_h of the groups of a block, and det F and J of these. */
 void merged_cells_gradients(const struct body *body, const struct block *block, block_rows F,

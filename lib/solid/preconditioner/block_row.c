@@ -7,55 +7,11 @@
 #include "solid/body/merged_cells.h"
 #include "solid/body/nodal_volume.h"
 #include "solid/body/stress.h"
+#include "solid/material/tensor.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* The functions of the cells that are one domain. */
-struct domain {
-    int count;
-    int32_t node[4 * MERGED_MOST_CELLS];       /* in the body's order */
-    double gradient[4 * MERGED_MOST_CELLS][3]; /* 1/m, */
-    double along[4 * MERGED_MOST_CELLS][3];    /* F times that, */
-    double normal[4 * MERGED_MOST_CELLS][3];   /* and cof F times that: by how much J changes */
-    double weight;
-};
-
-static void list_domain(const struct body *body, int64_t first, int64_t end, struct domain *domain)
-{
-    int dim = body->dim;
-    double gradient[12];
-    domain->count = 0;
-    domain->weight = 0.0;
-    for (int64_t q = first; q < end; q++) {
-        domain->weight += body->weight[q];
-    }
-    for (int64_t q = first; q < end; q++) {
-        double share = body->weight[q] / domain->weight;
-        smoothed_cells_linear_gradients(body, q, gradient);
-        for (int k = 0; k <= dim; k++) {
-            int32_t node = smoothed_cells_node(body, q, k);
-            int at = 0;
-            while (at < domain->count && domain->node[at] != node) {
-                at++;
-            }
-            if (at == domain->count) {
-                domain->node[domain->count++] = node;
-                memset(domain->gradient[at], 0, sizeof domain->gradient[at]);
-            }
-            add_scaled(dim, share, gradient + k * dim, domain->gradient[at]);
-        }
-    }
-}
-
-/* y = A x */
-static void transform(const double A[9], const double x[3], double y[3])
-{
-    for (int i = 0; i < 3; i++) {
-        y[i] = A[3 * i] * x[0] + A[3 * i + 1] * x[1] + A[3 * i + 2] * x[2];
-    }
-}
 
 static double *block_of(struct block_row *row, int dim, int32_t node)
 {
@@ -75,11 +31,13 @@ static double *block_of(struct block_row *row, int dim, int32_t node)
  * is shear g . g' I + mixed (c f' + f c') + square c c' + turned (c c' - c' c). */
 struct tangent {
     double shear, mixed, square, turned;
-    double content, share; /* of each nodal volume, and that times the root of k */
+    double content, share;                   /* of each nodal volume, and that times the root of k */
+    double along[4 * MERGED_MOST_CELLS][3];  /* f of each function, */
+    double normal[4 * MERGED_MOST_CELLS][3]; /* and c: by how much J changes */
 };
 
-/* The tangent of the domain that cell q is in, and F g and cof F g of its functions. */
-static struct tangent find_tangent(const struct body *body, int64_t q, struct domain *domain)
+static void find_tangent(const struct body *body, int64_t q, const struct domain *domain,
+                         struct tangent *tangent)
 {
     static const double at_rest[9] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
     const struct material *material = &body->materials[body->material[q]];
@@ -95,32 +53,30 @@ static struct tangent find_tangent(const struct body *body, int64_t q, struct do
     }
     cofactor(F, C);
     for (int k = 0; k < domain->count; k++) {
-        transform(F, domain->gradient[k], domain->along[k]);
-        transform(C, domain->gradient[k], domain->normal[k]);
+        transform(F, domain->gradient[k], tangent->along[k]);
+        transform(C, domain->gradient[k], tangent->normal[k]);
     }
     double I1 = vector_dot(9, F, F), shear = domain->weight * mu / cbrt(J * J);
-    double content = domain->weight / domain->count;
-    double turned = (-shear * I1 / (3.0 * J) + domain->weight * pressure) / J;
-    return (struct tangent){.shear = shear,
-                            .mixed = -2.0 / 3.0 * shear / J,
-                            .square = 5.0 / 9.0 * shear * I1 / (J * J) +
-                                      domain->weight * (material->bulk_modulus - rest),
-                            .turned = turned,
-                            .content = content,
-                            .share = content * sqrt(fmin(rest, body->volumes.pressures.most * mu))};
+    tangent->shear = shear;
+    tangent->mixed = -2.0 / 3.0 * shear / J;
+    tangent->square = 5.0 / 9.0 * shear * I1 / (J * J) + domain->weight * (material->bulk_modulus - rest);
+    tangent->turned = (-shear * I1 / (3.0 * J) + domain->weight * pressure) / J;
+    tangent->content = domain->weight / domain->count;
+    tangent->share = tangent->content * sqrt(fmin(rest, body->volumes.pressures.most * mu));
 }
 
 /* Add the domain that cell q is in to the row of its function n. */
-static void add_domain(const struct body *body, int64_t q, int n, struct domain *domain,
+static void add_domain(const struct body *body, int64_t q, int n, const struct domain *domain,
                        struct block_row *row)
 {
     int dim = body->dim;
-    struct tangent t = find_tangent(body, q, domain);
-    const double *g = domain->gradient[n], *f = domain->along[n], *c = domain->normal[n];
+    struct tangent t;
+    find_tangent(body, q, domain, &t);
+    const double *g = domain->gradient[n], *f = t.along[n], *c = t.normal[n];
     row->volume += t.content;
     for (int m = 0; m < domain->count; m++) {
         double *block = block_of(row, dim, domain->node[m]);
-        const double *fm = domain->along[m], *cm = domain->normal[m];
+        const double *fm = t.along[m], *cm = t.normal[m];
         double common = t.shear * vector_dot(3, g, domain->gradient[m]);
         for (int a = 0; a < dim; a++) {
             block[a * dim + a] += common;
@@ -133,38 +89,19 @@ static void add_domain(const struct body *body, int64_t q, int n, struct domain 
     }
 }
 
-static bool cell_has(const struct body *body, int64_t q, int32_t node)
-{
-    bool has = false;
-    for (int k = 0; k <= body->dim; k++) {
-        has = has || smoothed_cells_node(body, q, k) == node;
-    }
-    return has;
-}
-
 void block_row_make(const struct body *body, int32_t node, struct block_row *row)
 {
     const struct field_averages *averages = &body->cells.averages;
     int64_t r = averages->row_count - body->node_count + node;
-    struct domain domain = {0};
+    struct domain domain;
     row->count = 0;
     row->volume = 0.0;
     for (int64_t i = averages->use_ptr[r]; i < averages->use_ptr[r + 1]; i++) {
         int64_t q = field_averages_cell(averages, body->dim, averages->use[i]);
-        int64_t first = smoothed_cells_group(body, q), end = smoothed_cells_group_end(body, q);
-        bool seen = false;
-        for (int64_t other = first; other < q; other++) {
-            seen = seen || cell_has(body, other, node);
+        int n = merged_cells_domain(body, q, node, &domain);
+        if (n >= 0) {
+            add_domain(body, q, n, &domain, row);
         }
-        if (seen) {
-            continue;
-        }
-        list_domain(body, first, end, &domain);
-        int n = 0;
-        while (domain.node[n] != node) {
-            n++;
-        }
-        add_domain(body, q, n, &domain, row);
     }
 }
 
