@@ -65,15 +65,6 @@ apply_rows(const struct sparse *matrix, int64_t begin, int64_t end, int64_t widt
     }
 }
 
-enum status sparse_rows_used(const struct sparse *matrix, bool **used, struct error *error)
-{
-    enum status status = NEW_ARRAY(used, matrix->row_count, error);
-    for (int64_t r = 0; status == STATUS_OK && r < matrix->row_count; r++) {
-        (*used)[r] = matrix->ptr[r + 1] > matrix->ptr[r];
-    }
-    return status;
-}
-
 /* The first row of thread t; each thread has about the same number of entries. */
 static int64_t begin_of(const struct sparse *matrix, int64_t first, int64_t last, int t, int threads)
 {

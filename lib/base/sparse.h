@@ -24,9 +24,6 @@ MUST_CHECK enum status sparse_transpose(const struct sparse *matrix, struct spar
                                         struct error *error);
 void sparse_free(struct sparse *matrix);
 
-/* (*used)[row_count], to be freed: rows that have entries. */
-MUST_CHECK enum status sparse_rows_used(const struct sparse *matrix, bool **used, struct error *error);
-
 /* y += A x in the rows from `first` to before `last`, in the order of the entries: y[row_count * width] of
  * x[column_count * width], another array. Threaded. */
 void sparse_add_rows(const struct sparse *matrix, int64_t first, int64_t last, int64_t width, const double *x,

@@ -39,7 +39,7 @@ static void add_weight(const struct assembly *input, double mass, int64_t count,
 static enum status add_cells(const struct assembly *input, struct body *body, double *force,
                              struct error *error)
 {
-    const struct sparse *table = row_operator_columns(&body->rows);
+    const struct sparse *table = &body->rows.matrix;
     int edges = CELL_EDGES(body->dim);
     SCRATCH double *mass = NULL; /* of each edge */
     RETURN_IF_ERROR(NEW_ARRAY(&mass, table->row_count, error));

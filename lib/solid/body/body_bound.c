@@ -80,7 +80,7 @@ static double bound_of_node(const struct body *body, int64_t node, bool rest)
 /* Of the nodes of a stripe of the operator; the rows of a point have the same nodes. */
 static void sum_points(const struct body *body, const struct row_stripe *stripe, bool rest, double *stiffness)
 {
-    const struct sparse *table = row_operator_columns(&body->rows);
+    const struct sparse *table = &body->rows.matrix;
     int dim = body->dim;
     for (int64_t k = 0; k < stripe->row_count; k++) {
         int64_t r = stripe->row[k] < 0 ? -1 - stripe->row[k] : stripe->row[k];

@@ -32,7 +32,7 @@
                                               const struct row_stripe *stripe, const double *x,              \
                                               double *restrict y)                                            \
     {                                                                                                        \
-        const struct sparse *table = row_operator_columns(rows);                                             \
+        const struct sparse *table = &rows->matrix;                                                          \
         const int32_t *idx = table->idx;                                                                     \
         const double *of = table->value;                                                                     \
         memset(y + stripe->begin * VECTOR_STRIDE(dim), 0,                                                    \

@@ -8,7 +8,10 @@
 static enum status cut_columns(struct row_operator *rows, const int32_t *count, int64_t begin, int64_t end,
                                int threads, struct error *error)
 {
-    int64_t entries = row_operator_columns(rows)->ptr[row_operator_columns(rows)->row_count], sum = 0;
+    int64_t entries = 0, sum = 0;
+    for (int64_t c = begin; c < end; c++) {
+        entries += count[c];
+    }
     RETURN_IF_ERROR(NEW_ARRAY(&rows->stripes, threads, error));
     rows->stripe_count = threads;
     for (int s = 0; s < threads; s++) {
@@ -56,7 +59,7 @@ static enum status list_rows(const struct sparse *table, const int32_t *range, s
  * the first. */
 static enum status find_ranges(const struct row_operator *rows, int32_t **range, struct error *error)
 {
-    const struct sparse *table = row_operator_columns(rows);
+    const struct sparse *table = &rows->matrix;
     enum status status = NEW_ARRAY(range, 2 * table->row_count, error);
     for (int64_t r = 0; r < table->row_count && status == STATUS_OK; r++) {
         int32_t low = INT32_MAX, high = -1;
@@ -74,7 +77,7 @@ static enum status find_ranges(const struct row_operator *rows, int32_t **range,
 enum status row_operator_finish(struct row_operator *rows, int64_t begin, int64_t end, int threads,
                                 struct error *error)
 {
-    const struct sparse *table = row_operator_columns(rows);
+    const struct sparse *table = &rows->matrix;
     SCRATCH int32_t *range = NULL;
     if (table->column_count > INT32_MAX) {
         return fail(error, STATUS_INPUT, "%lld nodes: too many", (long long)table->column_count);
@@ -98,6 +101,5 @@ void row_operator_free(struct row_operator *rows)
     }
     free(rows->stripes);
     sparse_free(&rows->matrix);
-    sparse_free(&rows->columns);
     *rows = (struct row_operator){0};
 }

@@ -14,18 +14,10 @@ struct row_stripe {
 };
 
 struct row_operator {
-    struct sparse matrix; /* B */
-    struct sparse
-        columns; /* several processes: the entries of B in columns of own nodes; no rows: `matrix` has them */
+    struct sparse matrix; /* B; with several processes the rows that own cells need or own nodes are in */
     int stripe_count;
     struct row_stripe *stripes;
 };
-
-/* The table that is transposed: all rows, with the columns of own nodes. */
-static inline const struct sparse *row_operator_columns(const struct row_operator *rows)
-{
-    return rows->columns.row_count > 0 ? &rows->columns : &rows->matrix;
-}
 
 /* Divide the columns from `begin` to before `end` into one stripe for each of `threads` threads. STATUS_INPUT
  * for 2^31 columns or more. */
