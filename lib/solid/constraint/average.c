@@ -53,3 +53,10 @@ void average_spread(const struct average *average, int dim, const double *amount
         spread(average, 3, amount, u);
     }
 }
+
+void average_add_squares(const struct average *average, double stiffness, double *mass)
+{
+    for (int64_t i = 0; i < average->length; i++) {
+        mass[average->idx[i]] += stiffness * average->phi[i] * average->phi[i];
+    }
+}

@@ -25,3 +25,6 @@ void average_place(const struct average *average, int dim, const double *rest, c
 
 /* The transpose: u_j += phi_j amount[dim]. */
 void average_spread(const struct average *average, int dim, const double *amount, double *u);
+
+/* mass_j += stiffness phi_j^2: what a spring on the average adds to the diagonal of its nodes. */
+void average_add_squares(const struct average *average, double stiffness, double *mass);

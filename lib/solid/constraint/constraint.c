@@ -100,6 +100,16 @@ struct average constraint_rows_average(const struct constraint_rows *rows, int64
     return average_of_list(rows, rows->list[r]);
 }
 
+struct sparse constraint_rows_lists(const struct constraint_rows *rows, int64_t node_count)
+{
+    static int64_t none[1]; /* of no rows */
+    return (struct sparse){.row_count = rows->list_count,
+                           .column_count = node_count,
+                           .ptr = rows->list_count > 0 ? rows->ptr : none,
+                           .idx = rows->idx,
+                           .value = rows->phi};
+}
+
 /* The component of a vector along the direction of row r. */
 static double along(const struct constraint_rows *rows, int64_t r, const double *vector)
 {
@@ -138,7 +148,7 @@ double constraint_rows_target(const struct constraint_rows *rows, int64_t r, con
 static enum status assemble(const struct constraint_rows *rows, int64_t node_count, const double *mass,
                             int64_t **ptr, int64_t **column, double **value, struct error *error)
 {
-    const struct sparse lists = {rows->list_count, node_count, rows->ptr, rows->idx, rows->phi};
+    const struct sparse lists = constraint_rows_lists(rows, node_count);
     FREED_BY(sparse_free) struct sparse of_node = {0};
     SCRATCH int64_t *touched = NULL, *last = NULL;
     int64_t capacity = 0, at = 0; /* last: the list that touched each last */

@@ -48,6 +48,9 @@ MUST_CHECK enum status constraint_rows_add(struct constraint_rows *rows, int64_t
 /* The average that row r prescribes. */
 struct average constraint_rows_average(const struct constraint_rows *rows, int64_t r);
 
+/* The lists as rows of a sparse matrix, over so many nodes. */
+struct sparse constraint_rows_lists(const struct constraint_rows *rows, int64_t node_count);
+
 /* What row r prescribes at these values of the load curves, m. */
 double constraint_rows_target(const struct constraint_rows *rows, int64_t r, const double *factor);
 

@@ -22,12 +22,7 @@ static void weigh(struct sparse *lists, const double *mass, const bool *wanted)
 enum status constraint_nodes_build(const struct constraint_rows *rows, int64_t node_count, const double *mass,
                                    const bool *wanted, struct constraint_nodes *nodes, struct error *error)
 {
-    static int64_t none[1]; /* of no rows */
-    const struct sparse by_list = {.row_count = rows->list_count,
-                                   .column_count = node_count,
-                                   .ptr = rows->list_count > 0 ? rows->ptr : none,
-                                   .idx = rows->idx,
-                                   .value = rows->phi};
+    const struct sparse by_list = constraint_rows_lists(rows, node_count);
     *nodes = (struct constraint_nodes){.rows = rows};
     RETURN_IF_ERROR(NEW_ARRAY(&nodes->on_list, rows->list_count * rows->dim, error));
     RETURN_IF_ERROR(NEW_ARRAY(&nodes->used, rows->list_count, error));

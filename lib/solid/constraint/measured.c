@@ -108,11 +108,7 @@ enum status measured_dependent(const struct constraint_rows *rows, int64_t node_
                                struct error *error)
 {
     FREED_BY(envelope_free) struct envelope factor = {0};
-    NEW_SCRATCH(double, mass, node_count, error);
-    for (int64_t n = 0; n < node_count; n++) {
-        mass[n] = 1.0;
-    }
-    RETURN_IF_ERROR(constraint_factorise(rows, node_count, mass, least_independent, 0.0, &factor, error));
+    RETURN_IF_ERROR(constraint_factorise(rows, node_count, NULL, least_independent, 0.0, &factor, error));
     for (int64_t r = 0; r < rows->count; r++) {
         dependent[factor.order[r]] = envelope_is_dropped(&factor, r);
     }

@@ -169,19 +169,19 @@ static double distance_to_border(const struct sheet *sheet, const double *x)
 bool sheet_at(const struct sheet *sheet, const double *x, double reach, struct sheet_place *place)
 {
     int dim = sheet->surface.dim;
-    struct rigid_foot near;
+    struct rigid_contact near = rigid_closest(&sheet->surface, x, reach);
     double away[3] = {0.0};
-    if (!rigid_nearest(&sheet->surface, x, reach, &near)) {
+    if (!near.within) {
         return false;
     }
     vector_subtract(dim, x, near.point, away);
-    place->height = vector_dot(dim, away, near.normal);
-    place->beyond = near.rim;
+    place->height = vector_dot(dim, away, near.side);
+    place->beyond = near.on_rim;
     memcpy(place->near, near.point, sizeof place->near);
     memcpy(place->foot, near.point, sizeof place->foot);
-    memcpy(place->normal, near.normal, sizeof place->normal);
-    if (near.rim) {
-        add_scaled(dim, -place->height, near.normal, away);
+    memcpy(place->normal, near.side, sizeof place->normal);
+    if (near.on_rim) {
+        add_scaled(dim, -place->height, near.side, away);
         add_scaled(dim, 1.0, away, place->foot);
     } else {
         place->height = copysign(vector_length(dim, away), place->height);

@@ -14,12 +14,7 @@
 static enum status transpose_lists(const struct constraint_rows *rows, int64_t nodes, struct sparse *lists,
                                    struct error *error)
 {
-    static int64_t none[1]; /* of no rows */
-    const struct sparse by_list = {.row_count = rows->list_count,
-                                   .column_count = nodes,
-                                   .ptr = rows->list_count > 0 ? rows->ptr : none,
-                                   .idx = rows->idx,
-                                   .value = rows->phi};
+    const struct sparse by_list = constraint_rows_lists(rows, nodes);
     return sparse_transpose(&by_list, lists, error);
 }
 

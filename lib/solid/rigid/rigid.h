@@ -50,6 +50,11 @@ struct rigid_contact {
     double normal[3]; /* unit, the direction in which the gap grows */
     int64_t facet;    /* facet of the closest point, */
     double weight[3]; /* and barycentric coordinates of the point */
+    /* Also beyond an open rim: */
+    bool within;     /* something is within reach: */
+    bool on_rim;     /* the closest point is on an open rim, */
+    double point[3]; /* and there, m, */
+    double side[3];  /* the normal of the facet, edge or vertex, unit */
 };
 
 /* A filter of facets. `considers` is called for facets that may be within reach, then `admits` for a facet f
@@ -70,15 +75,6 @@ struct rigid_contact rigid_closest(const struct rigid_surface *surface, const do
 /* The same among the facets that the filter admits. */
 struct rigid_contact rigid_closest_among(const struct rigid_surface *surface, const double *x, double reach,
                                          const struct rigid_filter *filter);
-
-/* The nearest point of the surface within reach, also where x lies beyond an open rim. */
-struct rigid_foot {
-    bool rim;        /* the nearest point is on an open rim */
-    double point[3]; /* m */
-    double normal[3]; /* of the facet, edge or vertex there, unit */
-};
-bool rigid_nearest(const struct rigid_surface *surface, const double *x, double reach,
-                   struct rigid_foot *foot);
 
 /* Whether x lies behind the surface, not on the side that the normals point to. For a closed surface by its
  * winding number about x, which edges of four facets, and facets that pass through each other, do not deceive

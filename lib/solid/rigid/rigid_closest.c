@@ -189,19 +189,6 @@ static const double *pseudo_normal(const struct rigid_surface *surface, const st
     return vector_dot(dim, joint, joint) > 0.5 ? joint : normal;
 }
 
-bool rigid_nearest(const struct rigid_surface *surface, const double *x, double reach,
-                   struct rigid_foot *foot)
-{
-    struct nearest nearest = find_nearest(surface, x, reach, NULL);
-    if (nearest.facet < 0 || !(nearest.distance2 < reach * reach)) {
-        return false;
-    }
-    foot->rim = nearest.rim;
-    memcpy(foot->point, nearest.point, sizeof foot->point);
-    memcpy(foot->normal, pseudo_normal(surface, &nearest), (size_t)surface->dim * sizeof(double));
-    return true;
-}
-
 /* For a nearest point on a rim: how far x is beyond the rim, and its least distance from the region above the
  * surface and from the surface's plane. */
 static double beyond_rim(const struct rigid_surface *surface, const struct nearest *nearest,
@@ -245,6 +232,10 @@ struct rigid_contact rigid_closest_among(const struct rigid_surface *surface, co
     const double *normal = pseudo_normal(surface, &nearest);
     vector_subtract(dim, x, nearest.point, away);
     contact.distance = sqrt(nearest.distance2);
+    contact.within = true;
+    contact.on_rim = nearest.rim;
+    memcpy(contact.point, nearest.point, sizeof contact.point);
+    memcpy(contact.side, normal, (size_t)dim * sizeof *normal);
     if (nearest.rim) {
         double least_distance, beyond = beyond_rim(surface, &nearest, away, &least_distance);
         if (beyond > ROUND_OFF * surface->extent) {

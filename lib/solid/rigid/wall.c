@@ -8,40 +8,35 @@
 /* Below this |axis x n| of unit vectors the direction around the axis is round-off. */
 static const double least_sine = 1e-9;
 
-/* The nearest point of a surface, and its normal there: from the vertices' where the facet is known. */
-static void find_foot(const struct rigid_surface *surface, const double *x, struct rigid_foot *foot)
+/* The nearest point of a surface; `side`: its normal there, from the vertices' where the facet is known. */
+static struct rigid_contact find_foot(const struct rigid_surface *surface, const double *x)
 {
-    struct rigid_contact contact = rigid_closest(surface, x, INFINITY);
-    (void)rigid_nearest(surface, x, INFINITY, foot);
-    if (!contact.found) {
-        return;
-    }
+    struct rigid_contact foot = rigid_closest(surface, x, INFINITY);
     double normal[3] = {0.0};
-    for (int k = 0; k < 3; k++) {
-        add_scaled(3, contact.weight[k],
-                   surface->vertex_normal + 3 * (int64_t)surface->facet[3 * contact.facet + k], normal);
+    for (int k = 0; k < 3 && foot.found; k++) {
+        add_scaled(3, foot.weight[k],
+                   surface->vertex_normal + 3 * (int64_t)surface->facet[3 * foot.facet + k], normal);
     }
     if (vector_length(3, normal) > 0.5) {
         vector_normalise(3, normal);
-        memcpy(foot->normal, normal, sizeof normal);
+        memcpy(foot.side, normal, sizeof normal);
     }
+    return foot;
 }
 
 /* Turn the normal of a foot towards the other side of the wall. */
-static void turn_across(const double across[3], struct rigid_foot *foot)
+static void turn_across(const double across[3], struct rigid_contact *foot)
 {
-    bool against = vector_dot(3, foot->normal, across) < 0.0;
+    bool against = vector_dot(3, foot->side, across) < 0.0;
     for (int i = 0; i < 3 && against; i++) {
-        foot->normal[i] = -foot->normal[i];
+        foot->side[i] = -foot->side[i];
     }
 }
 
 /* The depth at x, and n; false where the nearest place is the same on both surfaces. */
 static bool find_across(const struct wall *wall, const double *x, double *depth, double n[3])
 {
-    struct rigid_foot from, to;
-    find_foot(wall->from, x, &from);
-    find_foot(wall->to, x, &to);
+    struct rigid_contact from = find_foot(wall->from, x), to = find_foot(wall->to, x);
     double d1 = vector_distance(3, from.point, x), d2 = vector_distance(3, to.point, x);
     double across[3];
     vector_subtract(3, to.point, from.point, across);
@@ -52,7 +47,7 @@ static bool find_across(const struct wall *wall, const double *x, double *depth,
     turn_across(across, &to);
     *depth = d1 / (d1 + d2);
     for (int i = 0; i < 3; i++) {
-        n[i] = (1.0 - *depth) * from.normal[i] + *depth * to.normal[i];
+        n[i] = (1.0 - *depth) * from.side[i] + *depth * to.side[i];
     }
     vector_normalise(3, n);
     return true;

@@ -173,9 +173,7 @@ void membrane_add_to_bound(const struct membrane *membrane, double *mass)
         }
         for (int k = 0; k < dim; k++) {
             struct average average = average_of_boundary(&membrane->corners, membrane->corner[f * dim + k]);
-            for (int64_t i = 0; i < average.length; i++) {
-                mass[average.idx[i]] += stiffness * average.phi[i] * average.phi[i];
-            }
+            average_add_squares(&average, stiffness, mass);
         }
     }
 }

@@ -195,14 +195,6 @@ bool system_has_inverse(const struct solid_system *system)
     return system->body.smoothed && system->node_lists != NULL;
 }
 
-/* The stiffness that a constraint penalty on an average adds to its nodes. */
-static void add_to_bound(const struct average *average, double stiffness, double *mass)
-{
-    for (int64_t i = 0; i < average->length; i++) {
-        mass[average->idx[i]] += stiffness * average->phi[i] * average->phi[i];
-    }
-}
-
 static void add_penalties_to_bound(const struct solid_system *system, double *mass)
 {
     for (int64_t c = 0; c < system->contact_count; c++) {
@@ -210,7 +202,7 @@ static void add_penalties_to_bound(const struct solid_system *system, double *ma
     }
     for (int64_t r = 0; r < system->penalties.rows.count; r++) {
         struct average average = constraint_rows_average(&system->penalties.rows, r);
-        add_to_bound(&average, system->penalties.stiffness[r], mass);
+        average_add_squares(&average, system->penalties.stiffness[r], mass);
     }
 }
 
