@@ -209,22 +209,28 @@ enum status visibility_begin(const struct visibility *visibility, const struct v
         work->cell = visibility->star + visibility->star_ptr[p];
         work->cell_count = visibility->star_ptr[p + 1] - visibility->star_ptr[p];
     } else if (places->cell != NULL) {
-        work->cell = visibility_places_cells(places, p, &work->cell_count);
-        work->cell_count = work->cell_count > 0 && work->cell[0] >= 0 ? work->cell_count : -1;
+        int64_t rest = p - places->long_rows * places->points_per_row;
+        int64_t row =
+            places->long_rows > 0 && rest >= 0 ? places->long_rows + rest : p / places->points_per_row;
+        int64_t first = places->ptr != NULL ? places->ptr[row] : row;
+        int64_t count = (places->ptr != NULL ? places->ptr[row + 1] : row + 1) - first;
+        work->cell = places->cell + first;
+        work->cell_count = count > 0 && work->cell[0] >= 0 ? count : -1;
     }
     return visibility->cell_side != NULL && !whole ? take_side(visibility, work, error) : STATUS_OK;
 }
 
-/* Whether a node is visible from a node of the point's cells, by way of which the path is not much longer
- * than straight. */
-static enum status look_around(const struct visibility *visibility, int32_t node,
-                               struct visibility_work *work, bool *seen, struct error *error)
+/* Whether a node is visible; or it is so from a node of the point's cells, by way of which the path is not
+ * much longer than straight. */
+static enum status look(const struct visibility *visibility, int32_t node, struct visibility_work *work,
+                        bool *seen, struct error *error)
 {
     const struct cells *cells = &visibility->cells;
     int dim = cells->dim, corners = dim + 1;
     const double *y = cells->x + (int64_t)node * dim;
     double most = most_detour * vector_distance(dim, work->from, y);
-    *seen = false;
+    RETURN_IF_ERROR(
+        visibility_walk(visibility, work->from, work->cell, work->cell_count, node, work, seen, error));
     for (int64_t i = 0; i < work->cell_count * corners && !*seen; i++) {
         int32_t corner = cells->node[(int64_t)work->cell[i / corners] * corners + i % corners];
         const double *by = cells->x + (int64_t)corner * dim;
@@ -236,37 +242,21 @@ static enum status look_around(const struct visibility *visibility, int32_t node
     return STATUS_OK;
 }
 
-/* Whether a node is a neighbour; what is known of it is kept for wider supports. */
-static enum status look(const struct visibility *visibility, int32_t node, struct visibility_work *work,
-                        bool *seen, struct error *error)
-{
-    RETURN_IF_ERROR(
-        visibility_walk(visibility, work->from, work->cell, work->cell_count, node, work, seen, error));
-    if (!*seen) {
-        RETURN_IF_ERROR(look_around(visibility, node, work, seen, error));
-    }
-    return STATUS_OK;
-}
-
-/* Whether a node nearer than its radius may be hidden from the point. */
-static bool may_be_hidden(const struct visibility *visibility, int32_t node, const double *x)
-{
-    int dim = visibility->cells.dim;
-    const double *y = visibility->cells.x + (int64_t)node * dim;
-    return vector_distance(dim, y, x) >= visibility->hidden_from[node];
-}
-
 enum status visibility_filter(const struct visibility *visibility, double widen, int32_t *index,
                               int64_t *count, struct visibility_work *work, struct error *error)
 {
     int64_t kept = 0;
+    int dim = visibility->cells.dim;
     bool whole = visibility->cell_side != NULL && work->side < 0; /* hidden_from is for sides */
     for (int64_t i = 0; i < *count; i++) {
         bool seen = true;
         if (work->side >= 0 && !is_on(visibility, index[i], work->side)) {
             continue;
         }
-        if (widen > 1.0 || work->outside || whole || may_be_hidden(visibility, index[i], work->x)) {
+        /* Nearer than all that may hide it? */
+        bool near = vector_distance(dim, visibility->cells.x + (int64_t)index[i] * dim, work->x) <
+                    visibility->hidden_from[index[i]];
+        if (widen > 1.0 || work->outside || whole || !near) {
             RETURN_IF_ERROR(work->cell_count < 0 ? visibility_locate(visibility, work->x, work, error)
                                                  : STATUS_OK);
             RETURN_IF_ERROR(work->cell_count > 0 ? look(visibility, index[i], work, &seen, error)

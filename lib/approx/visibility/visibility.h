@@ -53,21 +53,6 @@ struct visibility_places {
     int64_t long_rows;      /* 0: all rows */
 };
 
-/* The known cells of point p, *count of them. */
-static inline const int32_t *visibility_places_cells(const struct visibility_places *places, int64_t p,
-                                                     int64_t *count)
-{
-    *count = 0;
-    if (places->nodes || places->cell == NULL) {
-        return NULL;
-    }
-    int64_t row = p / places->points_per_row, rest = p - places->long_rows * places->points_per_row;
-    row = places->long_rows > 0 && rest >= 0 ? places->long_rows + rest : row;
-    int64_t first = places->ptr != NULL ? places->ptr[row] : row;
-    *count = (places->ptr != NULL ? places->ptr[row + 1] : row + 1) - first;
-    return places->cell + first;
-}
-
 /* Scratch space for one thread, all zero at first; grows on demand. */
 struct visibility_work {
     const double *x; /* the current point, */
