@@ -89,6 +89,9 @@ lid() {
     { block quasi-static && printf '[output]\nframes = 1\n' # at rest, where the side is on the plate to round-off, none is told
         printf '[displacement y]\nfacets = ymin\nnormal = 0\n[contact x]\nfacets = xmax\nrigid = plate.tsv\nunit = m\nside = left\ntranslation = -0.01, 0\ncurve = smooth\n'; } > lid.scene
     notes 'mtled: lid.scene: at the end no contact presses the body, which nothing else holds: it may move along (1, 0), and lies anywhere; it may have slipped out of its contacts or turned over: frames show when'
+    printf '%s\n' '0.0999999 -1' '0.0999999 1' > plate.tsv # the side begins behind it: no penetration of frame 0
+    printf '[displacement held]\nfacets = xmin\nnormal = 0\n' >> lid.scene
+    notes ''
 }
 
 @test "a block that walls enclose, at a pressure of 20 shear moduli: the closed form" {

@@ -82,7 +82,7 @@ void run_contacts_penetrate(struct run *run, double motion, double allowed, bool
         worst = contact_miss(&system->contacts[c]) > contact_miss(worst) ? &system->contacts[c] : worst;
     }
     miss = system_contact_miss(system);
-    if (miss <= statics_round_off(system)) { /* as at the start, where nothing has moved */
+    if (!(motion > 0.0) || miss <= statics_round_off(system)) { /* as at the start, where nothing has moved */
         return;
     }
     if (!run->model->assembly.in_time && miss > run->scene->solver.tolerance * motion) {
