@@ -97,32 +97,16 @@ static enum status find_surfaces(struct folds *folds, struct error *error)
     return STATUS_OK;
 }
 
-static void find_middle(const struct folds *folds, const double *x, int64_t cell, double *middle)
+/* Whether a cell contains a point, barycentric coordinates being larger than FOLD_BEYOND_FACET. */
+static bool contains(const struct cells *cells, int64_t cell, const double *point)
 {
-    int dim = folds->input.cells.dim, corners = dim + 1;
-    vector_middle(dim, x, corners, folds->input.cells.node + cell * corners, middle);
-}
-
-/* Whether a cell contains a point, barycentric coordinates being larger than
- * FOLD_BEYOND_FACET. */
-static bool contains(const struct folds *folds, int64_t cell, const double *point)
-{
-    int dim = folds->input.cells.dim, corners = dim + 1;
-    const double *vertex[4] = {NULL, NULL, NULL, NULL};
-    for (int k = 0; k < corners; k++) {
-        vertex[k] = folds->y + (int64_t)folds->input.cells.node[cell * corners + k] * dim;
+    double coordinate[4];
+    bool within = true;
+    cell_barycentric(cells, cell, point, coordinate);
+    for (int k = 0; k <= cells->dim; k++) {
+        within = within && coordinate[k] > FOLD_BEYOND_FACET;
     }
-    double whole = simplex_determinant(dim, vertex[0], vertex[1], vertex[2], vertex[3]);
-    for (int k = 0; k < corners; k++) {
-        const double *kept = vertex[k];
-        vertex[k] = point;
-        double part = simplex_determinant(dim, vertex[0], vertex[1], vertex[2], vertex[3]);
-        vertex[k] = kept;
-        if (!(part / whole > FOLD_BEYOND_FACET)) {
-            return false;
-        }
-    }
-    return true;
+    return within;
 }
 
 /* Whether two cells have a node together. */
@@ -141,11 +125,9 @@ static bool are_neighbours(const struct folds *folds, int64_t c, int64_t other)
 
 /* Whether a cell is left out of the search: slivers do not follow the field between their nodes, nor do cells
  * that are inverted a little or because they are flat. */
-static bool is_left_out(const struct folds *folds, int64_t cell)
+static bool is_left_out(const struct folds *folds, const struct cells *now, int64_t cell)
 {
-    struct cells now = folds->input.cells;
-    now.x = folds->y;
-    return cell_quality(&folds->input.cells, cell, NULL) < POOR_QUALITY || cell_volume(&now, cell) <= 0.0;
+    return cell_quality(&folds->input.cells, cell, NULL) < POOR_QUALITY || cell_volume(now, cell) <= 0.0;
 }
 
 /* Look for cells whose middle is deep in a cell of another body, or else in any cell that they share no node
@@ -155,12 +137,14 @@ static enum status look_for_overlaps(struct folds *folds, bool of_bodies, struct
 {
     int dim = folds->input.cells.dim;
     int64_t count = folds->input.cells.count;
+    struct cells now = folds->input.cells;
+    now.x = folds->y;
     FREED_BY(point_grid_free) struct point_grid grid = {0};
     FREED_BY(index_list_free) struct index_list near = {0};
     NEW_SCRATCH(double, middle, count * dim, error);
     NEW_SCRATCH(double, radius, count, error);
     for (int64_t c = 0; c < count; c++) {
-        find_middle(folds, folds->y, c, middle + c * dim);
+        cell_centroid(&now, c, middle + c * dim);
         radius[c] = ROUND_OFF * folds->extent;
     }
     RETURN_IF_ERROR(point_grid_build(&grid, dim, count, middle, radius, error));
@@ -172,11 +156,11 @@ static enum status look_for_overlaps(struct folds *folds, bool of_bodies, struct
             int32_t other = near.index[i];
             bool apart =
                 folds->part[other] != folds->part[c] || (!of_bodies && !are_neighbours(folds, c, other));
-            if (apart && contains(folds, c, middle + (int64_t)other * dim) && !is_left_out(folds, c) &&
-                !is_left_out(folds, other) && fold->count++ == 0) {
+            if (apart && contains(&now, c, middle + (int64_t)other * dim) && !is_left_out(folds, &now, c) &&
+                !is_left_out(folds, &now, other) && fold->count++ == 0) {
                 fold->kind = FOLD_WITHIN;
                 fold->cell = other; /* the first one */
-                find_middle(folds, folds->input.cells.x, other, fold->place);
+                cell_centroid(&folds->input.cells, other, fold->place);
             }
         }
     }
