@@ -120,14 +120,16 @@ static int64_t list_columns(const struct batch *batch, const int32_t *users, int
                             int32_t *seen, int32_t *column)
 {
     int64_t columns = 0;
-    for (int64_t e = 0; e < count * MOST_ENTRIES; e++) {
-        int32_t q = batch->pattern[users[e / MOST_ENTRIES] * MOST_ENTRIES + e % MOST_ENTRIES];
-        if (q >= 0 && q <= batch->row[number] && seen[q] != number + 1) {
-            seen[q] = (int32_t)number + 1;
-            if (column != NULL) {
-                column[columns] = q;
+    for (int64_t u = 0; u < count; u++) {
+        const int32_t *pattern = batch->pattern + users[u] * MOST_ENTRIES;
+        for (int e = 0; e < MOST_ENTRIES && pattern[e] >= 0; e++) {
+            if (pattern[e] <= batch->row[number] && seen[pattern[e]] != number + 1) {
+                seen[pattern[e]] = (int32_t)number + 1;
+                if (column != NULL) {
+                    column[columns] = pattern[e];
+                }
+                columns++;
             }
-            columns++;
         }
     }
     return columns;
