@@ -109,7 +109,7 @@ void labels_mix(const struct labels *labels, const double x[], struct label_mix 
     for (int i = 0; i < 4 * rows; i++) {
         uint16_t label = stencil.row[i / 4][i % 4];
         int known = mix->count;
-        if (i > 0 && label == (&stencil.row[0][0])[i - 1]) {
+        if (i > 0 && label == stencil.row[(i - 1) / 4][(i - 1) % 4]) { /* as the one before */
             continue;
         }
         while (known > 0 && mix->label[known - 1] != label) {
