@@ -205,16 +205,16 @@ brain='model = ogden\nmu = 842\nalpha = -4.7\nkappa = 8.42e7\nprony = .45 .5, .3
         printf '[displacement a]\nfacets = zmin\ncomponents = 0, 0, 0\n[traction t]\nfacets = zmax\ncomponents = 0.004, 0.01, 0\n%b[solver]\ntolerance = 1e-7\n%s\n' "$4" "$5" >> "$1.scene"
         mtled "$1.scene" beam.mts > "$1.dat"
     }
-    near() { # SECTION FILE FILE
-        paste <(mts print "$1" "$2") <(mts print u "$3") | awk '{ sum += $4^2 + $5^2 + $6^2; off += ($1 - $4)^2 + ($2 - $5)^2 + ($3 - $6)^2 }
-            END { print off / sum; exit !(sum > 1 && off < 1e-10 * sum) }'
+    near() { # SECTION FILE FILE MOST: nodal offsets have the long-term modulus at first, too
+        paste <(mts print "$1" "$2") <(mts print u "$3") | awk -v most="$4" '{ sum += $4^2 + $5^2 + $6^2; off += ($1 - $4)^2 + ($2 - $5)^2 + ($3 - $6)^2 }
+            END { print off / sum; exit !(sum > 1 && off < most * sum) }'
     }
     for law in 'model = neo-hookean' 'model = ogden\nalpha = 3'; do
         bent first "$law\nmu = 1"
         bent last "$law\nmu = 0.25"
         bent creep "$law\nmu = 1\nprony = .5 1, .25 .2" 'duration = 100\n' 'curve = step\n[output]\nframes = 40\n' 'time_steps = 40'
-        near u.frame.0 creep.dat first.dat
-        near u creep.dat last.dat
+        near u.frame.0 creep.dat first.dat 1e-6
+        near u creep.dat last.dat 1e-10
     done
 }
 

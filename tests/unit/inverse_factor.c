@@ -55,12 +55,14 @@ static void release(struct cube *cube)
     lattice_free(&cube->l);
 }
 
-/* Without nodal pressures K is the change of the forces at rest. */
+/* Without nodal pressures and offsets K is the change of the forces at rest. */
 TEST_IN_EACH_DIM(stiffness_is_exact)
 {
     const double epsilon = 1e-7;
     struct cube cube;
     build(&cube, dim, 0.2, false, 0.0);
+    double *offsets = cube.l.system.body.cells.offset_stiffness;
+    memset(offsets, 0, (size_t)cube.n * sizeof *offsets);
     double *u = lattice_vector(&cube.l), *force[2] = {lattice_vector(&cube.l), lattice_vector(&cube.l)};
     double largest = 0.0, off = 0.0;
     for (int64_t j = 0; j < cube.size; j++) {

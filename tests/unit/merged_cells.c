@@ -238,6 +238,7 @@ TEST_IN_EACH_DIM(relaxation)
             setup[i].material[m].prony_terms = i == 2 ? 2 : 0;
         }
         body[i] = make_body(&sample, &setup[i]);
+        memset(body[i].cells.offset_stiffness, 0, (size_t)sample.cloud.node_count * sizeof *u); /* elastic */
         force[i] = zeros(count, sizeof *u);
         (void)body_force(&body[i], u, force[i]);
         energy[i] = body_energy(&body[i], u);

@@ -112,7 +112,7 @@ void body_diagonal(struct body *body, bool rest, double *stiffness)
     if (body->smoothed) {
 #pragma omp parallel for schedule(static) num_threads(chunks_of(last - first, NODES_FOR_THREAD).threads)
         for (int64_t n = first; n < last; n++) {
-            stiffness[body->order.nodes[n]] = bound_of_node(body, n, rest);
+            stiffness[body->order.nodes[n]] = bound_of_node(body, n, rest) + body->cells.offset_stiffness[n];
         }
     } else {
 #pragma omp parallel for schedule(static, 1) num_threads(body->rows.stripe_count)

@@ -154,6 +154,9 @@ enum status body_share_values(const struct body *body, bool **wanted, struct err
             (*wanted)[averages->of_use[i] / VECTOR_STRIDE(dim)] = true;
         }
     }
+    for (int64_t n = share->begin_node; n < share->end_node; n++) { /* nodal_offset.h */
+        (*wanted)[averages->row_count - body->node_count + n] = true;
+    }
     return STATUS_OK;
 }
 

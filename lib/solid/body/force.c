@@ -1,6 +1,7 @@
 /* The force loop: deformation gradients from parameters (apply the operator), stresses, and forces on
  * the parameters (apply its transpose); equation (12) of lib/README.md. */
 #include "solid/body/kernel.h"
+#include "solid/body/nodal_offset.h"
 #include "solid/body/nodal_volume.h"
 #include "solid/body/stress.h"
 
@@ -143,8 +144,10 @@ static void evaluate(struct body *body, const double *u, double *force)
             for_blocks(body, stress_cell_block);
             body_share_exchange(share, &share->parts, body->dim, averages->part_force);
             sum_parts(body);
+            nodal_offsets_push_rows(body);
             body_share_exchange(share, &share->rows, stride, averages->force);
             apply_transposed(body, averages->force, body->force);
+            nodal_offsets_push_nodes(body);
         } else {
             for_blocks(body, stress_point_block);
             body_share_exchange(share, &share->rows, stride, body->derivative);
@@ -253,7 +256,7 @@ double body_energy(struct body *body, const double *u)
             block->energy += point_energy(body, block, q, &block->dissipated);
         }
     }
-    return sum_blocks(body);
+    return sum_blocks(body) + (body->smoothed ? nodal_offsets_energy(body) : 0.0);
 }
 
 double body_active_energy(struct body *body, int32_t curve)

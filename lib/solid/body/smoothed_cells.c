@@ -2,6 +2,7 @@
 
 #include "base/memory.h"
 #include "solid/body/body.h"
+#include "solid/body/nodal_offset.h"
 #include "base/vector.h"
 
 #include <string.h>
@@ -74,6 +75,7 @@ enum status smoothed_cells_build(const struct body_input *input, struct body *bo
     RETURN_IF_ERROR(set_variance_weights(body, error));
     RETURN_IF_ERROR(NEW_ARRAY(&smoothed->interpolant, entries, error));
     RETURN_IF_ERROR(smoothed_rows_build(input, body, error));
+    RETURN_IF_ERROR(nodal_offsets_build(input, body, error));
     RETURN_IF_ERROR(set_face_gradients(body, error));
     for (int64_t b = 0; b < body->block_count; b++) {
         body->blocks[b].boundary_face = field_averages_face(&smoothed->averages, body->blocks[b].first_point);
@@ -84,8 +86,8 @@ enum status smoothed_cells_build(const struct body_input *input, struct body *bo
 void smoothed_cells_free(struct smoothed_cells *smoothed)
 {
     field_averages_free(&smoothed->averages);
-    FREE_ALL(smoothed->interpolant, smoothed->variance_weight, smoothed->linear_gradient, smoothed->group,
-             smoothed->group_end, smoothed->kept);
+    FREE_ALL(smoothed->interpolant, smoothed->offset_stiffness, smoothed->variance_weight,
+             smoothed->linear_gradient, smoothed->group, smoothed->group_end, smoothed->kept);
     *smoothed = (struct smoothed_cells){0};
 }
 

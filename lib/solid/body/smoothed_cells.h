@@ -39,7 +39,8 @@ struct smoothed_cells {
                     (k - 1) dim
                     + b holds component b of the gradient of N_k, k = 1 .. dim, in each cell, 1/m; the
                     gradients of all N_k sum to zero */
-    int64_t merged_count;    /* cells that are merged with a larger one (merged_cells.h) */
+    double *offset_stiffness; /* node_count, in the body's order: see nodal_offset.h, N/m (2D: N/m2) */
+    int64_t merged_count;     /* cells that are merged with a larger one (merged_cells.h) */
     int32_t *group,
         *group_end; /* of each cell in the body's order: the cells of its group; NULL: all are alone */
     double *kept;   /* of each cell: how much of its difference from the mean of its group it keeps; 0 of

@@ -1,6 +1,6 @@
 /* The elastic stiffness K at rest of a body of smoothed cells, and of the penalties of conditions, by rows of
- * dim x dim blocks K_pq: exact but for the nodal pressures, which are taken without their projection; private
- * to lib/solid/preconditioner.
+ * dim x dim blocks K_pq: exact but for the nodal pressures, which are taken without their projection, and
+ * nodal offsets, which are left out: with them no fewer iterations; private to lib/solid/preconditioner.
  *
  * A row is found as the forces of a move of node p: the mean gradients g of its shape function in the cells
  * around it, the contents of the nodal volumes there and their pressures, and the forces of the cells on the
