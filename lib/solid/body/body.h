@@ -135,6 +135,12 @@ struct body {
 MUST_CHECK enum status body_build(const struct body_input *input, struct body *body, struct error *error);
 void body_free(struct body *body);
 
+/* Of smoothed cells: the row of the value at a node, in the body's order. */
+static inline int64_t body_node_row(const struct body *body, int64_t node)
+{
+    return body->cells.averages.row_count - body->node_count + node;
+}
+
 /* How far an evaluation is from inversion. */
 struct deformation {
     double least_jacobian; /* least det F, or volume ratio of a cell */

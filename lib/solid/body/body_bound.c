@@ -63,7 +63,7 @@ static double bound_along(const struct bound *bound, int dim, const double *g)
 static double bound_of_node(const struct body *body, int64_t node, bool rest)
 {
     const struct field_averages *averages = &body->cells.averages;
-    int64_t row = averages->row_count - body->node_count + node;
+    int64_t row = body_node_row(body, node);
     struct domain domain;
     double sum = 0.0;
     for (int64_t i = averages->use_ptr[row]; i < averages->use_ptr[row + 1]; i++) {

@@ -155,7 +155,7 @@ enum status body_share_values(const struct body *body, bool **wanted, struct err
         }
     }
     for (int64_t n = share->begin_node; n < share->end_node; n++) { /* nodal_offset.h */
-        (*wanted)[averages->row_count - body->node_count + n] = true;
+        (*wanted)[body_node_row(body, n)] = true;
     }
     return STATUS_OK;
 }

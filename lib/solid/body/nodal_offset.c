@@ -59,18 +59,15 @@ enum status nodal_offsets_build(const struct body_input *input, struct body *bod
 /* offset[dim] of a node in the body's order. */
 static void offset_of(const struct body *body, int64_t node, double *offset)
 {
-    const struct field_averages *averages = &body->cells.averages;
     int stride = VECTOR_STRIDE(body->dim);
-    int64_t row = averages->row_count - body->node_count + node;
-    for (int a = 0; a < body->dim; a++) {
-        offset[a] = body->u[node * stride + a] - averages->value[row * stride + a];
-    }
+    const double *field = body->cells.averages.value + body_node_row(body, node) * stride;
+    vector_subtract(body->dim, body->u + node * stride, field, offset);
 }
 
 void nodal_offsets_push_rows(struct body *body)
 {
     const struct row_ranges *sums = &body->share.sums;
-    int64_t first = body->cells.averages.row_count - body->node_count;
+    int64_t first = body_node_row(body, 0);
 #pragma omp for schedule(static)
     for (int64_t i = 0; i < sums->count; i++) {
         int64_t begin = sums->items[i].begin < first ? first : sums->items[i].begin;

@@ -1,9 +1,9 @@
 #include "solid/body/smoothed_cells.h"
 
 #include "base/memory.h"
+#include "base/vector.h"
 #include "solid/body/body.h"
 #include "solid/body/nodal_offset.h"
-#include "base/vector.h"
 
 #include <string.h>
 
@@ -167,7 +167,6 @@ int smoothed_cells_rows(const struct body *body, int64_t q, int32_t row[SMOOTHED
                         double gradient[SMOOTHED_MOST_ROWS * 3])
 {
     int dim = body->dim, count = CELL_EDGES(dim);
-    int32_t first_vertex = (int32_t)(body->cells.averages.row_count - body->node_count);
     double grad_N[12];
     smoothed_cells_linear_gradients(body, q, grad_N);
     memset(gradient, 0, (size_t)(count * dim) * sizeof *gradient);
@@ -177,7 +176,7 @@ int smoothed_cells_rows(const struct body *body, int64_t q, int32_t row[SMOOTHED
         add_scaled(dim, EDGE_GRADIENT(dim), grad_N + cell_edge_ends[e][1] * dim, gradient + e * dim);
     }
     for (int k = 0; k <= dim && VERTEX_GRADIENT(dim) > 0.0; k++) {
-        row[count] = first_vertex + smoothed_cells_node(body, q, k);
+        row[count] = (int32_t)body_node_row(body, smoothed_cells_node(body, q, k));
         memset(gradient + dim * count, 0, (size_t)dim * sizeof *gradient);
         add_scaled(dim, VERTEX_GRADIENT(dim), grad_N + k * dim, gradient + dim * count++);
     }
@@ -189,7 +188,7 @@ int32_t smoothed_cells_node(const struct body *body, int64_t q, int k)
     const struct field_averages *averages = &body->cells.averages;
     int64_t use = field_averages_vertices(averages, body->dim) + q * (body->dim + 1) + k;
     int32_t row = averages->of_use[use] / VECTOR_STRIDE(body->dim);
-    return row - (int32_t)(averages->row_count - body->node_count);
+    return row - (int32_t)body_node_row(body, 0);
 }
 
 double smoothed_cells_share(const struct body *body, int64_t q)

@@ -92,7 +92,7 @@ static void add_domain(const struct body *body, int64_t q, int n, const struct d
 void block_row_make(const struct body *body, int32_t node, struct block_row *row)
 {
     const struct field_averages *averages = &body->cells.averages;
-    int64_t r = averages->row_count - body->node_count + node;
+    int64_t r = body_node_row(body, node);
     struct domain domain;
     row->count = 0;
     row->volume = 0.0;
@@ -109,7 +109,7 @@ int64_t block_row_most(const struct body *body)
 {
     const struct field_averages *averages = &body->cells.averages;
     int64_t most = 0;
-    for (int64_t r = averages->row_count - body->node_count; r < averages->row_count; r++) {
+    for (int64_t r = body_node_row(body, 0); r < averages->row_count; r++) {
         int64_t neighbours = 0;
         for (int64_t i = averages->use_ptr[r]; i < averages->use_ptr[r + 1]; i++) {
             int64_t q = field_averages_cell(averages, body->dim, averages->use[i]);

@@ -32,8 +32,7 @@ static void set_cell(const struct body *body, int64_t q, struct stiffness_cell *
     cell->count = smoothed_cells_rows(body, q, cell->field, cell->gradient);
     smoothed_cells_linear_gradients(body, q, cell->linear_gradient);
     for (int k = 0; k <= body->dim; k++) {
-        cell->vertex[k] =
-            (int32_t)(body->cells.averages.row_count - body->node_count) + smoothed_cells_node(body, q, k);
+        cell->vertex[k] = (int32_t)body_node_row(body, smoothed_cells_node(body, q, k));
     }
 }
 
