@@ -15,16 +15,10 @@ setup() { enter_loosely; }
     grep -q '^# facets.set .* names=xmin,xmax,ymin,ymax$' cloud.mts
 }
 
-@test "the same command, the same bytes; another seed, another cloud" {
+@test "jitter moves inner nodes by no more than it may, those of the boundary not at all, by the seed, and the cells fill the box" {
     cloud -d 2 -k jittered -n 9 --box 0,1,0,1 --seed 3 > one.mts
-    cloud -d 2 -k jittered -n 9 --box 0,1,0,1 --seed 3 -o two.mts
-    cmp one.mts two.mts
-    [ "$(cloud -d 2 -k jittered -n 9 --box 0,1,0,1 --seed 3 -t | rows nodes.x | cksum)" != \
-      "$(cloud -d 2 -k jittered -n 9 --box 0,1,0,1 --seed 4 -t | rows nodes.x | cksum)" ]
     GSL_RNG_SEED=9 GSL_RNG_TYPE=taus cloud -d 2 -k jittered -n 9 --box 0,1,0,1 --seed 3 | cmp - one.mts
-}
-
-@test "jitter moves inner nodes by no more than it may, those of the boundary not at all, and the cells fill the box" {
+    ! cloud -d 2 -k jittered -n 9 --box 0,1,0,1 --seed 4 | cmp -s - one.mts
     cloud -d 2 -k jittered -n 40 --box -1,3,0,1 --jitter 0.5 --seed 7 > jittered.mts
     cloud -d 2 -k regular -n 40 --box -1,3,0,1 > regular.mts
     paste <(mts print nodes.x jittered.mts) <(mts print nodes.x regular.mts) | awk '

@@ -279,7 +279,7 @@ END
 }
 
 # What a command says besides notes.
-but_notes() { grep -v -e 'left out' -e 'with defaults' -e 'thin for their cells' -e 'keep their old value'; }
+but_notes() { grep -v -e 'left out' -e 'with defaults' -e 'one cell thick' -e 'keep their old value'; }
 
 # each STATUS PATTERN COMMAND-LINE: every command, written @ there, has this status and says this behind its name; nothing if it is empty
 each() {

@@ -189,7 +189,7 @@ END
     # A needle on a corner sees its three nodes alone.
     printf '# mts 1\n# nodes.x f8 6 2 enc=text unit=m\n0 0\n1 0\n1 1\n0 1\n2 1.01\n2 1.02\n\n\n' > needle.mts
     printf '# cells i4 3 3 enc=text\n0 1 2\n0 2 3\n2 4 5\n\n\n# end 2\n' >> needle.mts
-    run -0 --separate-stderr bash -c 'ipoints needle.mts | support > lists.mts && shapefn lists.mts > table.mts && mts check table.mts'
+    run -0 --separate-stderr bash -c 'ipoints needle.mts | support -R 1.5m > lists.mts && shapefn lists.mts > table.mts && mts check table.mts'
     [[ "$stderr" == "support: points on faces: 9 of "*" have gradients beyond the bound with all radii; "*": worst at ("*", 1.0"*" for 6"* ]]
     run -1 --separate-stderr support -m 7 needle.mts
     [[ "$stderr" == *"(4 nodes within"*": too few" ]]

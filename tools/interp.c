@@ -162,12 +162,12 @@ static enum status make_table(const struct tool *tool, const struct field_shapes
     NEW_SCRATCH(double, radius, cells.node_count, error);
     RETURN_IF_ERROR(field_spacing(&cells, spacing, error));
     RETURN_IF_ERROR(support_radii(support, cells.node_count, spacing, radius, error));
-    fit.radius = radius;
+    fit.supports.radius = radius;
     if (file != NULL) {
         RETURN_IF_ERROR(drop_outside(tool, &cells, spacing, skip, file, points, error));
     }
-    return field_table_build(known->radius != NULL ? known : &fit, &cells, points->at.count, points->at.x,
-                             file != NULL ? file : "points.x", &points->table, error);
+    return field_table_build(known->supports.radius != NULL ? known : &fit, &cells, points->at.count,
+                             points->at.x, file != NULL ? file : "points.x", &points->table, error);
 }
 
 /* Whether a section is a nodal field, not part of the discretisation. */
@@ -244,7 +244,7 @@ static void find_points(const struct tool *tool, struct stream *stream, int dim,
         const struct section *radius = stream_find(stream, "support.radius");
         stage_fill(tool, stream, "ipoints");
         points_of_section(tool, stream, "points.x", &points->at);
-        if (known.radius == NULL && radius != NULL) {
+        if (known.supports.radius == NULL && radius != NULL) {
             TOOL_TRY(tool, stage_recorded(stream, "support", &known, &error));
         }
     } else if (tool_given(tool, "unit") || landmarks_named(file)) {

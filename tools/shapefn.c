@@ -50,7 +50,7 @@ int main(int argc, char *argv[])
     TOOL_TRY(&tool, stage_shapefn(&stream, &recorded.shapes, &error));
     /* Other tools evaluate the shape functions by these settings. */
     const struct section *radius = stream_find(&stream, "support.radius");
-    TOOL_TRY(&tool, stage_record(&stream, &recorded, radius->rows, radius->data, &error));
+    TOOL_TRY(&tool, stage_record(&stream, &recorded, radius->rows, &error));
     tool_write(&tool, &stream);
     return tool_end(&tool);
 }

@@ -77,15 +77,16 @@ static enum status adaptive_cell_points(const struct stream *stream, const struc
 {
     const struct section *recorded = stream_find(stream, "support.radius");
     NEW_SCRATCH(double, made, cells->node_count, error);
-    const double *radius = made;
+    SCRATCH double *stretch = NULL;
+    struct supports supports;
     if (recorded == NULL || options->given_radius) {
-        RETURN_IF_ERROR(
-            stage_radii(stream, &options->refinement.support, cells->node_count, cells->x, made, error));
+        RETURN_IF_ERROR(stage_radii(stream, &options->refinement.support, cells->node_count, cells->x, made,
+                                    &stretch, error));
+        supports = (struct supports){made, stretch};
     } else {
-        RETURN_IF_ERROR(stream_view(stream, "support.radius", &recorded, error));
-        radius = recorded->data;
+        RETURN_IF_ERROR(stream_supports(stream, "support", &supports, error));
     }
-    return adaptive_points_build(&options->refinement, cells, radius, points, error);
+    return adaptive_points_build(&options->refinement, cells, supports, points, error);
 }
 
 static enum status put_points(struct stream *stream, int dim, const char *rule,

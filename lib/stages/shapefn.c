@@ -15,10 +15,11 @@ static enum status tabulate(const struct stream *stream, const struct mls *mls, 
     int dim;
     int64_t node_count;
     const double *nodes;
-    const struct section *points, *radius;
+    const struct section *points;
+    struct supports supports;
     RETURN_IF_ERROR(stream_nodes(stream, &dim, &node_count, &nodes, error));
     RETURN_IF_ERROR(stream_view(stream, section, &points, error));
-    RETURN_IF_ERROR(stream_view(stream, "support.radius", &radius, error));
+    RETURN_IF_ERROR(stream_supports(stream, "support", &supports, error));
     RETURN_IF_ERROR(stream_neighbours(stream, prefix, points->rows, lists, error));
     if (lists->widen == NULL) {
         return fail(error, STATUS_INPUT, "no section %s.widen: run support", prefix);
@@ -26,8 +27,8 @@ static enum status tabulate(const struct stream *stream, const struct mls *mls, 
     int64_t pairs = lists->ptr[lists->count];
     RETURN_IF_ERROR(NEW_ARRAY(phi, pairs, error));
     RETURN_IF_ERROR(dphi != NULL ? NEW_ARRAY(dphi, pairs * dim, error) : STATUS_OK);
-    return shape_table(mls, nodes, radius->data, lists, points->data, section, *phi,
-                       dphi != NULL ? *dphi : NULL, error);
+    return shape_table(mls, nodes, supports, lists, points->data, section, *phi, dphi != NULL ? *dphi : NULL,
+                       error);
 }
 
 /* The values at the points of boundary faces, and for smoothed cells the rows of the edges. What lies at

@@ -24,10 +24,11 @@ struct ipoints_options {
 MUST_CHECK enum status stage_ipoints(struct stream *stream, const struct ipoints_options *options,
                                      int64_t *unresolved, struct error *error);
 
-/* radius[node_count] as the stage `support` sets them: constant, or a factor times the local spacing, that of
- * the cells if there are any. */
+/* radius[node_count] and (*stretch)[], to be freed, as the stage `support` sets them: constant balls, or a
+ * factor times the local spacing, that of the cells if there are any, and support_stretch. */
 MUST_CHECK enum status stage_radii(const struct stream *stream, const struct support_options *options,
-                                   int64_t node_count, const double *x, double *radius, struct error *error);
+                                   int64_t node_count, const double *x, double *radius, double **stretch,
+                                   struct error *error);
 
 /* Statistics of one of the lists of `support`, */
 struct list_report {
@@ -77,18 +78,19 @@ MUST_CHECK enum status mls_apply(const struct mls_texts *texts, struct mls *mls,
 MUST_CHECK enum status stage_sides(const struct stream *stream, const char *prefix, const int32_t **side,
                                    struct error *error);
 
-/* A view of PREFIX.radius, the settings from its attributes, and a view of PREFIX.side, if it exists, as
- * recorded->support.side. Settings that are not recorded are those of support_defaults(). PREFIX is support;
- * or parameters, for the field that mtled computed. */
+/* Views of PREFIX.radius and PREFIX.stretch, the settings from the attributes, and a view of PREFIX.side, if
+ * it exists, as recorded->support.side. Settings that are not recorded are those of support_defaults().
+ * PREFIX is support; or parameters, for the field that mtled computed. */
 MUST_CHECK enum status stage_recorded(const struct stream *stream, const char *prefix,
                                       struct field_shapes *recorded, struct error *error);
 
-/* Put radius[node_count] as support.radius, with the settings. */
+/* Put the supports of the nodes as support.radius and support.stretch, with the settings. */
 MUST_CHECK enum status stage_record(struct stream *stream, const struct field_shapes *recorded,
-                                    int64_t node_count, const double *radius, struct error *error);
+                                    int64_t node_count, struct error *error);
 
 /* The field that mtled computed is u_h(x) = sum_j phi_j(x) d_j. Its results hold the parameters d_j in the
- * sections parameters and parameters.frame.K, and the supports of phi_j in parameters.radius, as `recorded`.
+ * sections parameters and parameters.frame.K, and the supports of phi_j in parameters.radius and
+ * parameters.stretch, as `recorded`.
  * The section to evaluate for a field: for u and u.frame.K their parameters, if they exist and fit; else the
  * field itself, whose values are taken as parameters. */
 const struct section *solved_parameters(const struct stream *stream, const struct field_shapes *recorded,

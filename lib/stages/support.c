@@ -10,13 +10,16 @@
 #include <string.h>
 
 enum status stage_radii(const struct stream *stream, const struct support_options *options,
-                        int64_t node_count, const double *x, double *radius, struct error *error)
+                        int64_t node_count, const double *x, double *radius, double **stretch,
+                        struct error *error)
 {
     struct cells cells;
+    *stretch = NULL;
     NEW_SCRATCH(double, spacing, node_count, error);
     RETURN_IF_ERROR(stream_cells(stream, false, &cells, error));
     if (!(options->radius > 0.0)) { /* the local spacing: of the cells if there are any, else of the nodes */
-        RETURN_IF_ERROR(cells.count > 0 ? cells_node_spacing(&cells, spacing, error)
+        RETURN_IF_ERROR(cells.count > 0 ? support_stretch(&cells, stretch, error) : STATUS_OK);
+        RETURN_IF_ERROR(cells.count > 0 ? cells_node_spacing(&cells, *stretch, spacing, error)
                                         : nodes_spacing(options->mls.dim, node_count, x, spacing, error));
     }
     return support_radii(options, node_count, spacing, radius, error);
@@ -81,6 +84,7 @@ static enum status stage_lists(struct stream *stream, const struct support_optio
     FREED_BY(visibility_free) struct visibility space = {0};
     const struct section *points, *cell;
     struct visibility_places places = {0};
+    struct supports supports;
     struct cells cells;
     SCRATCH int64_t *face_ptr = NULL;
     SCRATCH int32_t *face_cell = NULL;
@@ -91,8 +95,8 @@ static enum status stage_lists(struct stream *stream, const struct support_optio
         RETURN_IF_ERROR(
             stream_put_copy(stream, "support.side", TYPE_I4, cells.count, 1, "", options->side, error));
     }
-    RETURN_IF_ERROR(visibility_build(&cells, stream_find(stream, "support.radius")->data, options->visibility,
-                                     options->side, &space, error));
+    RETURN_IF_ERROR(stream_supports(stream, "support", &supports, error));
+    RETURN_IF_ERROR(visibility_build(&cells, supports, options->visibility, options->side, &space, error));
     bool smoothed = points_are_smoothed(points);                   /* gradients come from the faces alone */
     if (!smoothed && stream_find(stream, "points.cell") != NULL) { /* else cells are searched for */
         RETURN_IF_ERROR(stream_view(stream, "points.cell", &cell, error));
@@ -124,10 +128,11 @@ enum status stage_support(struct stream *stream, const struct support_options *o
     if (cells.count == 0) {
         actual.visibility = VISIBILITY_DISTANCE;
     }
+    SCRATCH double *stretch = NULL;
     NEW_SCRATCH(double, radius, cells.node_count, error);
-    RETURN_IF_ERROR(stage_radii(stream, &actual, cells.node_count, cells.x, radius, error));
-    const struct field_shapes shapes = {NULL, actual, actual.mls};
-    RETURN_IF_ERROR(stage_record(stream, &shapes, cells.node_count, radius, error));
+    RETURN_IF_ERROR(stage_radii(stream, &actual, cells.node_count, cells.x, radius, &stretch, error));
+    const struct field_shapes shapes = {{radius, stretch}, actual, actual.mls};
+    RETURN_IF_ERROR(stage_record(stream, &shapes, cells.node_count, error));
     return stage_lists(stream, &actual, report, error);
 }
 
@@ -201,12 +206,19 @@ enum status stage_renew(struct stream *stream, const int32_t *side, struct error
     struct cells cells;
     RETURN_IF_ERROR(stream_cells(stream, true, &cells, error));
     RETURN_IF_ERROR(stage_recorded(stream, "support", &recorded, error));
+    int64_t entries = recorded.supports.stretch != NULL ? cells.node_count * cells.dim * cells.dim : 0;
     NEW_SCRATCH(double, radius, cells.node_count, error);
-    memcpy(radius, recorded.radius, (size_t)cells.node_count * sizeof *radius);
+    NEW_SCRATCH(double, stretch, entries, error);
+    memcpy(radius, recorded.supports.radius, (size_t)cells.node_count * sizeof *radius);
+    recorded.supports.radius = radius;
+    if (entries > 0) {
+        memcpy(stretch, recorded.supports.stretch, (size_t)entries * sizeof *stretch);
+        recorded.supports.stretch = stretch;
+    }
     recorded.support.side = side;
     sections_remove(stream, MADE_WITH_SUPPORT, MADE_WITH_SHAPES);
     RETURN_IF_ERROR(stage_face_points(stream, error));
-    RETURN_IF_ERROR(stage_record(stream, &recorded, cells.node_count, radius, error));
+    RETURN_IF_ERROR(stage_record(stream, &recorded, cells.node_count, error));
     RETURN_IF_ERROR(stage_lists(stream, &recorded.support, &report, error));
     return stage_shapefn(stream, &recorded.shapes, error);
 }
@@ -327,7 +339,7 @@ enum status stage_recorded(const struct stream *stream, const char *prefix, stru
         return STATUS_OK;
     }
     RETURN_IF_ERROR(stream_view(stream, name, &radius, error));
-    recorded->radius = radius->data;
+    RETURN_IF_ERROR(stream_supports(stream, prefix, &recorded->supports, error));
     RETURN_IF_ERROR(stage_sides(stream, prefix, &options->side, error));
     RETURN_IF_ERROR(read_mls(radius, "", &options->mls, error));
     recorded->shapes = options->mls;
@@ -353,11 +365,17 @@ enum status stage_recorded(const struct stream *stream, const char *prefix, stru
 }
 
 enum status stage_record(struct stream *stream, const struct field_shapes *recorded, int64_t node_count,
-                         const double *radius, struct error *error)
+                         struct error *error)
 {
     char described[DESCRIPTION];
+    int64_t dim = recorded->support.mls.dim;
     describe(recorded, described);
-    return stream_put_copy(stream, "support.radius", TYPE_F8, node_count, 1, described, radius, error);
+    RETURN_IF_ERROR(stream_put_copy(stream, "support.radius", TYPE_F8, node_count, 1, described,
+                                    recorded->supports.radius, error));
+    return recorded->supports.stretch == NULL
+               ? STATUS_OK
+               : stream_put_copy(stream, "support.stretch", TYPE_F8, node_count, dim * dim, "",
+                                 recorded->supports.stretch, error);
 }
 
 /* ---- the field that mtled computed ---- */
@@ -368,7 +386,7 @@ const struct section *solved_parameters(const struct stream *stream, const struc
                                         const struct section *field)
 {
     char name[96];
-    if (recorded->radius == NULL ||
+    if (recorded->supports.radius == NULL ||
         (strcmp(field->name, "u") != 0 && strncmp(field->name, "u.frame.", 8) != 0)) {
         return field;
     }

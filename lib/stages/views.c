@@ -322,6 +322,21 @@ enum status stream_neighbours(const struct stream *stream, const char *prefix, i
     return STATUS_OK;
 }
 
+enum status stream_supports(const struct stream *stream, const char *prefix, struct supports *supports,
+                            struct error *error)
+{
+    const struct section *radius, *stretch;
+    int dim = 0;
+    RETURN_IF_ERROR(stream_nodes(stream, &dim, NULL, NULL, error));
+    RETURN_IF_ERROR(view_member(stream, prefix, "radius", true, &radius, error));
+    RETURN_IF_ERROR(view_member(stream, prefix, "stretch", false, &stretch, error));
+    *supports = (struct supports){radius->data, stretch != NULL ? stretch->data : NULL};
+    return stretch == NULL || stretch->cols == dim * dim
+               ? STATUS_OK
+               : fail(error, STATUS_INPUT, "%s: %jd columns, not %d", stretch->name, stretch->cols,
+                      dim * dim);
+}
+
 enum status stream_put_copy(struct stream *stream, const char *name, enum element_type type, int64_t rows,
                             int64_t cols, const char *attributes, const void *data, struct error *error)
 {

@@ -69,6 +69,10 @@ MUST_CHECK enum status stream_faces(const struct stream *stream, struct faces *f
 MUST_CHECK enum status stream_neighbours(const struct stream *stream, const char *prefix, int64_t rows,
                                          struct neighbours *lists, struct error *error);
 
+/* The supports of the nodes: PREFIX.radius, and PREFIX.stretch if it exists. */
+MUST_CHECK enum status stream_supports(const struct stream *stream, const char *prefix,
+                                       struct supports *supports, struct error *error);
+
 /* Whether points.x has one point for each cell, for smoothed cells. */
 bool points_are_smoothed(const struct section *points);
 

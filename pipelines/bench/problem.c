@@ -23,8 +23,8 @@ static enum status build_lists(const struct problem *problem, int64_t count, con
     FREED_BY(visibility_free) struct visibility space = {0};
     options.visibility = VISIBILITY_DISTANCE;
     support_free(lists);
-    RETURN_IF_ERROR(
-        visibility_build(&problem->cells, problem->radius, options.visibility, options.side, &space, error));
+    RETURN_IF_ERROR(visibility_build(&problem->cells, (struct supports){.radius = problem->radius},
+                                     options.visibility, options.side, &space, error));
     return support_build(&options, &space, NULL, count, x, name, lists, error);
 }
 
@@ -41,8 +41,8 @@ enum status problem_nodes(struct problem *problem, struct error *error)
     RETURN_IF_ERROR(build_lists(problem, count, x, "nodes.x", &problem->node_lists, error));
     RETURN_IF_ERROR(NEW_ARRAY(&problem->node_phi, problem->node_lists.ptr[count], error));
     struct neighbours lists = problem->node_lists;
-    return shape_table(&problem->options.mls, x, problem->radius, &lists, x, "nodes.x", problem->node_phi,
-                       NULL, error);
+    return shape_table(&problem->options.mls, x, (struct supports){.radius = problem->radius}, &lists, x,
+                       "nodes.x", problem->node_phi, NULL, error);
 }
 
 /* The table, allocated with the first run. */
@@ -56,8 +56,9 @@ static enum status run_shape(struct problem *problem, bool gradients, struct err
     if (gradients && problem->dphi == NULL) {
         RETURN_IF_ERROR(NEW_ARRAY(&problem->dphi, pairs * problem->cloud.dim, error));
     }
-    return shape_table(&problem->options.mls, problem->cloud.x, problem->radius, &lists, problem->points,
-                       "points.x", problem->phi, gradients ? problem->dphi : NULL, error);
+    return shape_table(&problem->options.mls, problem->cloud.x, (struct supports){.radius = problem->radius},
+                       &lists, problem->points, "points.x", problem->phi, gradients ? problem->dphi : NULL,
+                       error);
 }
 
 enum status problem_gradients(void *context, struct error *error)

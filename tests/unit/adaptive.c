@@ -20,7 +20,7 @@ static struct body body_of(int dim, int64_t per_axis)
     body.cells = cells_of(&body.cloud);
     double *spacing = zeros(body.cells.node_count, sizeof *spacing);
     body.radius = calloc((size_t)body.cells.node_count, sizeof *body.radius);
-    GOOD(cells_node_spacing(&body.cells, spacing, &error));
+    GOOD(cells_node_spacing(&body.cells, NULL, spacing, &error));
     body.options.support.factor = 2.4; /* smooth: where supports are widened, gradients jump */
     GOOD(support_radii(&body.options.support, body.cells.node_count, spacing, body.radius, &error));
     return body;
@@ -38,7 +38,7 @@ static struct adaptive_points integrate(const struct body *body, double toleranc
     struct adaptive_points points;
     options.tolerance = tolerance;
     options.levels = levels;
-    GOOD(adaptive_points_build(&options, &body->cells, body->radius, &points, &error));
+    GOOD(adaptive_points_build(&options, &body->cells, BALLS(body->radius), &points, &error));
     return points;
 }
 
@@ -82,14 +82,14 @@ static double *stiffness(const struct body *body, int64_t count, const double *x
     double *K = zeros(n * n, sizeof *K);
     FREED_BY(visibility_free) struct visibility space = {0};
     FREED_BY(support_free) struct neighbours found = {0};
-    GOOD(visibility_build(&body->cells, body->radius, body->options.support.visibility,
+    GOOD(visibility_build(&body->cells, BALLS(body->radius), body->options.support.visibility,
                           body->options.support.side, &space, &error));
     GOOD(support_build(&body->options.support, &space, NULL, count, x, "points.x", &found, &error));
     double *phi = zeros(found.ptr[count], sizeof *phi);
     double *dphi = zeros(found.ptr[count] * dim, sizeof *dphi);
     struct neighbours view = found;
-    GOOD(shape_table(&body->options.support.mls, body->cells.x, body->radius, &view, x, "points.x", phi, dphi,
-                     &error));
+    GOOD(shape_table(&body->options.support.mls, body->cells.x, BALLS(body->radius), &view, x, "points.x",
+                     phi, dphi, &error));
     for (int64_t p = 0; p < count; p++) {
         for (int64_t i = found.ptr[p]; i < found.ptr[p + 1]; i++) {
             for (int64_t k = found.ptr[p]; k < found.ptr[p + 1]; k++) {

@@ -61,8 +61,12 @@ static inline void scattered_free(struct scattered *cloud)
     free(cloud->points);
 }
 
-/* Supports and shape functions of all points of a cloud. */
+/* Supports that are balls. */
+#define BALLS(radii) ((struct supports){.radius = (radii)})
+
+/* Supports, with the stretch given beforehand, and shape functions of all points of a cloud. */
 struct table {
+    const double *stretch;
     double *radius, *phi, *dphi;
     struct visibility space;
     struct neighbours lists;
@@ -84,15 +88,15 @@ static inline enum status tabulate(const struct support_options *options, int64_
 {
     int dim = options->mls.dim;
     SCRATCH double *spacing = calloc((size_t)count, sizeof *spacing);
-    *table = (struct table){.radius = calloc((size_t)count, sizeof(double))};
+    *table = (struct table){table->stretch, .radius = calloc((size_t)count, sizeof(double))};
     enum status status = options->radius > 0.0 ? STATUS_OK : nodes_spacing(dim, count, x, spacing, error);
     if (status == STATUS_OK) {
         status = support_radii(options, count, spacing, table->radius, error);
     }
     if (status == STATUS_OK) {
         const struct cells none = {.dim = dim, .node_count = count, .x = x};
-        status =
-            visibility_build(&none, table->radius, options->visibility, options->side, &table->space, error);
+        status = visibility_build(&none, (struct supports){table->radius, table->stretch},
+                                  options->visibility, options->side, &table->space, error);
     }
     if (status == STATUS_OK) {
         status = support_build(options, &table->space, NULL, point_count, points, "points.x", &table->lists,
@@ -103,8 +107,8 @@ static inline enum status tabulate(const struct support_options *options, int64_
         table->phi = malloc((size_t)pairs * sizeof(double));
         table->dphi = malloc((size_t)(pairs * dim) * sizeof(double));
         struct neighbours lists = table->lists;
-        status = shape_table(&options->mls, x, table->radius, &lists, points, "points.x", table->phi,
-                             table->dphi, error);
+        status = shape_table(&options->mls, x, (struct supports){table->radius, table->stretch}, &lists,
+                             points, "points.x", table->phi, table->dphi, error);
     }
     return status;
 }

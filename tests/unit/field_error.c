@@ -124,7 +124,7 @@ TEST_IN_EACH_DIM(equal_errors_keep_a_mesh_even)
     struct size_field_request request = {.share = 0.25, .most_nodes = 1e9};
     struct size_field field;
     double *squared = array_of(cells.count, 3.0), *spacing = array_of(cells.node_count, 0.0);
-    GOOD(cells_node_spacing(&cells, spacing, &error));
+    GOOD(cells_node_spacing(&cells, NULL, spacing, &error));
     GOOD(size_field_build(&cells, squared, &request, &field, &error));
     for (int64_t n = 0; n < cells.node_count; n++) {
         AT_MOST(fabs(field.size[n] / spacing[n] - 0.5), 0.2);

@@ -106,7 +106,7 @@ static void evaluate(const struct mls *mls, const struct scattered *cloud, const
     enum mls_verdict verdict;
     struct mls_support support = {.x = x,
                                   .nodes = cloud->x,
-                                  .radius = table->radius,
+                                  .supports = {table->radius, table->stretch},
                                   .widen = table->lists.widen[p],
                                   .neighbours = table->lists.idx + table->lists.ptr[p],
                                   .count = table->lists.ptr[p + 1] - table->lists.ptr[p]};
@@ -122,10 +122,17 @@ TEST_IN_EACH_DIM(gradients)
 {
     FREED_BY(scattered_free)
     struct scattered cloud = scatter(dim, dim == 2 ? 10 : 6, 20, &places[2], 0.3, 3);
-    for (int b = 0; b < BASIS_COUNT; b++) {
+    struct random random = {6};
+    double *stretch = zeros(cloud.count * dim * dim, sizeof *stretch);
+    for (int64_t i = 0; i < cloud.count * dim * dim; i++) { /* of each node another one */
+        bool diagonal = i / dim % dim == i % dim;
+        stretch[i] = diagonal ? uniform(&random, 1.3, 1.6) : 0.1 * (double)(1 + i / (dim * dim) % 3);
+    }
+    for (int b = 0; b < 2 * BASIS_COUNT; b++) {
         for (int w = 0; w < WEIGHT_COUNT; w++) {
-            struct support_options options = options_for(dim, (enum basis)b, (enum weight_function)w);
-            FREED_BY(table_free) struct table table = {0};
+            struct support_options options = options_for(dim, (enum basis)(b / 2), (enum weight_function)w);
+            options.factor *= b % 2 == 0 ? 1.0 : 1.6;
+            FREED_BY(table_free) struct table table = {.stretch = b % 2 == 0 ? NULL : stretch};
             GOOD(tabulate(&options, cloud.count, cloud.x, 20, cloud.points, &table, &error));
             double h = 1e-5 * cloud.spacing;
             for (int64_t p = 0; p < 20; p++) {
@@ -243,7 +250,7 @@ TEST(normal_equations)
                 for (int64_t p = 0; p < 100; p++) {
                     struct mls_support support = {.x = cloud.points + p * dim,
                                                   .nodes = cloud.x,
-                                                  .radius = table.radius,
+                                                  .supports.radius = table.radius,
                                                   .widen = table.lists.widen[p],
                                                   .neighbours = table.lists.idx + table.lists.ptr[p],
                                                   .count = table.lists.ptr[p + 1] - table.lists.ptr[p]};

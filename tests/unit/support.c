@@ -69,7 +69,7 @@ TEST_IN_EACH_DIM(lists_against_brute_force)
             }
         }
         const struct cells none = {.dim = dim, .node_count = cloud.count, .x = cloud.x};
-        GOOD(visibility_build(&none, radius, options.visibility, options.side, &space, &error));
+        GOOD(visibility_build(&none, BALLS(radius), options.visibility, options.side, &space, &error));
         GOOD(support_build(&options, &space, NULL, POINTS, cloud.points, "points.x", &lists, &error));
         int64_t fewest = cloud.count, most = 0;
         for (int64_t p = 0; p < POINTS; p++) {
@@ -152,7 +152,7 @@ TEST(nearest_with_ties)
         const struct cells none = {.dim = 2, .node_count = 25, .x = x};
         double radius[25];
         GOOD(support_radii(&options, 25, NULL, radius, &error));
-        GOOD(visibility_build(&none, radius, options.visibility, options.side, &space, &error));
+        GOOD(visibility_build(&none, BALLS(radius), options.visibility, options.side, &space, &error));
         GOOD(support_build(&options, &space, NULL, 1, point, "points.x", &lists, &error));
         assert_int_equal(lists.ptr[1], most[i]);
         assert_memory_equal(lists.idx, expected[i], (size_t)most[i] * sizeof(int32_t));

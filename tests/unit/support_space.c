@@ -31,7 +31,7 @@ static struct halves make_halves(int dim, const struct support_options *options)
         cell_centroid(&halves.cells, c, middle);
         halves.side[c] = middle[0] > 0.5;
     }
-    GOOD(cells_node_spacing(&halves.cells, spacing, &error));
+    GOOD(cells_node_spacing(&halves.cells, NULL, spacing, &error));
     GOOD(support_radii(options, halves.cells.node_count, spacing, halves.radius, &error));
     return halves;
 }
@@ -76,8 +76,8 @@ TEST_IN_EACH_DIM(field_turns_cells_over)
     for (int64_t c = 0; c < cells->count; c++) {
         cell[c] = (int32_t)(cells->count - 1 - c);
     }
-    GOOD(visibility_build(cells, halves.radius, options.visibility, options.side, &space, &error));
-    GOOD(field_least_determinants(&(struct field_shapes){halves.radius, options, options.mls}, &space,
+    GOOD(visibility_build(cells, BALLS(halves.radius), options.visibility, options.side, &space, &error));
+    GOOD(field_least_determinants(&(struct field_shapes){{halves.radius, NULL}, options, options.mls}, &space,
                                   cells->count, cell, u, least, &error));
     for (int64_t c = 0; c < cells->count; c++) {
         double sum = 0.0, most = 0.0;
@@ -89,7 +89,7 @@ TEST_IN_EACH_DIM(field_turns_cells_over)
         NEAR_TO(least[c], 1.0 - 1.5 * (sum + (5 - dim) * most) / 6.0, 1e-9);
     }
     u[0] = (double)NAN;
-    GOOD(field_least_determinants(&(struct field_shapes){halves.radius, options, options.mls}, &space,
+    GOOD(field_least_determinants(&(struct field_shapes){{halves.radius, NULL}, options, options.mls}, &space,
                                   cells->count, cell, u, least, &error));
     assert_true(isnan(least[cells->count - 1]) && !isnan(least[0]));
     halves_free(&halves);
@@ -108,7 +108,8 @@ TEST_IN_EACH_DIM(lists_stop_at_the_interface)
     SCRATCH double *x = scatter_points(dim, COUNT);
     int64_t crossing = 0;
     options.side = halves.side;
-    GOOD(visibility_build(&halves.cells, halves.radius, options.visibility, options.side, &space, &error));
+    GOOD(visibility_build(&halves.cells, BALLS(halves.radius), options.visibility, options.side, &space,
+                          &error));
     GOOD(support_build(&options, &space, NULL, COUNT, x, "points", &lists, &error));
     for (int64_t p = 0; p < COUNT; p++) {
         int64_t at = lists.ptr[p];
@@ -138,7 +139,8 @@ TEST_IN_EACH_DIM(places_tell_the_side)
     int32_t *cell = zeros(cells, sizeof *cell);
     assert_true(middle != NULL && cell != NULL);
     options.side = halves.side;
-    GOOD(visibility_build(&halves.cells, halves.radius, options.visibility, options.side, &space, &error));
+    GOOD(visibility_build(&halves.cells, BALLS(halves.radius), options.visibility, options.side, &space,
+                          &error));
     struct visibility_places at_nodes = {.nodes = true}, in_cells = {.cell = cell, .points_per_row = 1};
     for (int64_t c = 0; c < cells; c++) {
         cell_centroid(&halves.cells, c, middle + c * dim);
@@ -173,8 +175,8 @@ TEST_IN_EACH_DIM(kinks_are_exact)
     for (int stops = 0; stops < 2; stops++) {
         FREED_BY(field_table_free) struct field_table table = {0};
         options.side = stops ? halves.side : NULL;
-        GOOD(field_table_build(&(struct field_shapes){halves.radius, options, options.mls}, &halves.cells,
-                               COUNT, x, "points", &table, &error));
+        GOOD(field_table_build(&(struct field_shapes){{halves.radius, NULL}, options, options.mls},
+                               &halves.cells, COUNT, x, "points", &table, &error));
         field_evaluate(COUNT, table.lists.ptr, table.lists.idx, table.phi, 1, field, got);
         for (int64_t p = 0; p < COUNT; p++) {
             double exact = fabs(x[p * dim] - 0.5) + 0.3 * x[p * dim + dim - 1];
@@ -201,8 +203,8 @@ TEST(inclusions)
             halves.side[c] = single ? c == 40 : fabs(middle[0] - 0.5) < 0.13 && fabs(middle[1] - 0.5) < 0.13;
         }
         options.side = halves.side;
-        GOOD(
-            visibility_build(&halves.cells, halves.radius, options.visibility, options.side, &space, &error));
+        GOOD(visibility_build(&halves.cells, BALLS(halves.radius), options.visibility, options.side, &space,
+                              &error));
         GOOD(support_build(&options, &space, &at_nodes, halves.cells.node_count, halves.cells.x, "nodes",
                            &lists, &error));
         assert_true(lists.fewest >= 3);
@@ -218,7 +220,8 @@ TEST(failures_name_the_row)
     struct neighbours lists;
     static const double x[] = {0.2, 0.2, 0.8, 0.8, NAN, 0.8, 0.7, 0.7};
     options.side = halves.side;
-    GOOD(visibility_build(&halves.cells, halves.radius, options.visibility, options.side, &space, &error));
+    GOOD(visibility_build(&halves.cells, BALLS(halves.radius), options.visibility, options.side, &space,
+                          &error));
     FAILS_WITH(support_build(&options, &space, NULL, 4, x, "points.x", &lists, &error), STATUS_INPUT,
                "points.x: row 2: not a finite coordinate");
     options.least = 1000;

@@ -126,7 +126,7 @@ static void find(double radius, bool widen)
             }
         }
     }
-    GOOD(visibility_build(&body.cells, found.radius, found.options.visibility, found.options.side,
+    GOOD(visibility_build(&body.cells, BALLS(found.radius), found.options.visibility, found.options.side,
                           &found.space, &error));
     struct visibility_places inside = {.cell = found.cell, .points_per_row = 1};
     GOOD(support_build(&found.options, &found.space, &inside, found.count, found.x, "points", &found.lists,
@@ -162,8 +162,8 @@ TEST_IN_EACH_DIM(convex)
         build(dim, (int[3]){7, 6, 5}, all_solid, one_sheet);
         find(wide ? 2.3 : 0.9, true);
         const struct cells none = {.dim = dim, .node_count = body.node_count, .x = body.x};
-        GOOD(visibility_build(&none, found.radius, found.options.visibility, found.options.side, &space,
-                              &error));
+        GOOD(visibility_build(&none, BALLS(found.radius), found.options.visibility, found.options.side,
+                              &space, &error));
         assert_true(wide || found.lists.widened > 0);
         GOOD(support_build(&found.options, &space, NULL, found.count, found.x, "points", &plain, &error));
         assert_true(same_lists(&plain, &found.lists));

@@ -73,21 +73,17 @@ enum status cell_report_hanging(const struct cells *cells, int64_t named_count, 
                              found.touching.count);
 }
 
-/* This is reported if the bending stiffness is wrong by `bound` along at least `noted_share` of the boundary.
- */
-static const double bound = 0.1, noted_share = 0.1;
+/* More of the volume than this is noted: a cube of two cells along each edge is not. */
+static const double noted_share = 0.6;
 
 void tool_note_thin(const struct tool *tool, const struct cells *cells)
 {
     struct thin_report thin;
-    TOOL_TRY(tool, cells_find_thin(cells, bound, &thin, &error));
+    TOOL_TRY(tool, cells_find_thin(cells, &thin, &error));
     if (thin.share > noted_share) {
-        tool_note(
-            tool,
-            "%.0f %% of the boundary is on parts that are thin for their cells: where the worst is, %.3g m "
-            "thick at %s m, the bending stiffness is %.2f (nu = 0.5) to %.2f (nu = 0) times the true "
-            "one: cells of a third of the thickness, in all directions, bend well",
-            100.0 * thin.share, thin.thickness, POINT_TEXT(cells->dim, thin.place), 1.0 + thin.excess[0],
-            1.0 + thin.excess[1]);
+        tool_note(tool,
+                  "%.0f %% of the volume is one cell thick, as at %s m: it bends too stiffly, by up to a "
+                  "half, or more where the cells are flat: two cells over the thickness bend well",
+                  100.0 * thin.share, POINT_TEXT(cells->dim, thin.place));
     }
 }

@@ -34,6 +34,5 @@ MUST_CHECK enum status cell_report_hanging(const struct cells *cells, int64_t na
                                            const int32_t *named, bool *parts, struct names *said,
                                            struct error *error);
 
-/* Note if a tenth of the boundary or more is on parts thin for their cells. Exits with a message on failure.
- */
+/* Note if most of the volume is one cell thick. Exits with a message on failure. */
 void tool_note_thin(const struct tool *tool, const struct cells *cells);

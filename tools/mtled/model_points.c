@@ -134,7 +134,7 @@ static enum status find_field(struct point_section *p, struct error *error)
         }
     }
     RETURN_IF_ERROR(stage_recorded(p->model->stream, "support", &recorded, error));
-    if (recorded.radius == NULL) {
+    if (recorded.supports.radius == NULL) {
         return fail(error, STATUS_INPUT, "no section support.radius: run support");
     }
     RETURN_IF_ERROR(field_table_build(&recorded, cells, measured->count, measured->x,

@@ -128,11 +128,11 @@ static enum status find_upright_cells(struct run *run, int64_t count, const int3
     const struct cells *cells = &run->model->assembly.cells;
     struct field_shapes recorded;
     RETURN_IF_ERROR(stage_recorded(run->stream, "support", &recorded, error));
-    if (recorded.radius == NULL) {
+    if (recorded.supports.radius == NULL) {
         return STATUS_OK;
     }
     if (!folds->has_space) {
-        RETURN_IF_ERROR(visibility_build(cells, recorded.radius, recorded.support.visibility,
+        RETURN_IF_ERROR(visibility_build(cells, recorded.supports, recorded.support.visibility,
                                          recorded.support.side, &folds->space, error));
         folds->has_space = true;
     }

@@ -40,12 +40,17 @@ void run_put_supports(const struct run *run)
 {
     const struct section *radius = stream_find(run->stream, "support.radius"),
                          *nodes = stream_find(run->stream, "nodes.x"),
+                         *stretch = stream_find(run->stream, "support.stretch"),
                          *side = stream_find(run->stream, "support.side");
     if (radius == NULL || nodes == NULL || radius->rows != nodes->rows) {
         return;
     }
     TOOL_TRY(run->tool, stream_put_copy(run->stream, "parameters.radius", TYPE_F8, radius->rows, 1,
                                         radius->attributes, radius->data, &error));
+    if (stretch != NULL) {
+        TOOL_TRY(run->tool, stream_put_copy(run->stream, "parameters.stretch", TYPE_F8, stretch->rows,
+                                            stretch->cols, "", stretch->data, &error));
+    }
     if (side != NULL) {
         TOOL_TRY(run->tool, stream_put_copy(run->stream, "parameters.side", TYPE_I4, side->rows, 1, "",
                                             side->data, &error));

@@ -343,13 +343,14 @@ static enum status place_points(const struct refinement *refinement, struct adap
 }
 
 enum status adaptive_points_build(const struct adaptive_options *options, const struct cells *cells,
-                                  const double *radius, struct adaptive_points *points, struct error *error)
+                                  struct supports supports, struct adaptive_points *points,
+                                  struct error *error)
 {
     FREED_BY(refinement_free) struct refinement refinement = {.options = options};
     int64_t marked;
     *points = (struct adaptive_points){0};
     RETURN_IF_ERROR(quadrature_cell_rule(cells->dim, options->rule_points, &refinement.rule, error));
-    RETURN_IF_ERROR(visibility_build(cells, radius, options->support.visibility, options->support.side,
+    RETURN_IF_ERROR(visibility_build(cells, supports, options->support.visibility, options->support.side,
                                      &refinement.space, error));
     RETURN_IF_ERROR(NEW_ARRAY(&refinement.norm, cells->count, error));
     RETURN_IF_ERROR(start(cells, &refinement, error));

@@ -30,10 +30,10 @@ struct adaptive_points {
 /* For each cell K_ij = integral(grad phi_i . grad phi_j) is computed by the rule on its subcells. Splitting a
  * subcell at the middles of its edges (4 triangles, 8 tetrahedra) changes K by c, in the Frobenius norm.
  * Subcells are split, those of largest c first, while the sum of c over the cell exceeds tolerance |K|. The
- * points are those of the subcells that are not split. radius[node_count]: support radii. Threads share the
+ * points are those of the subcells that are not split. supports: of the nodes. Threads share the
  * work; the result does not depend on their number. Errors: as support_build and shape_table, and
  * STATUS_INPUT for a rule that does not exist. */
 MUST_CHECK enum status adaptive_points_build(const struct adaptive_options *options,
-                                             const struct cells *cells, const double *radius,
+                                             const struct cells *cells, struct supports supports,
                                              struct adaptive_points *points, struct error *error);
 void adaptive_points_free(struct adaptive_points *points);

@@ -284,7 +284,21 @@ void faces_free(struct faces *faces)
     *faces = (struct faces){0};
 }
 
-enum status cells_node_spacing(const struct cells *cells, double *spacing, struct error *error)
+/* |A edge| with A of a node. */
+static double length_of(int dim, const double *stretch, int64_t node, const double *edge)
+{
+    double stretched[3];
+    if (stretch == NULL) {
+        return vector_length(dim, edge);
+    }
+    for (int a = 0; a < dim; a++) {
+        stretched[a] = vector_dot(dim, stretch + (node * dim + a) * dim, edge);
+    }
+    return vector_length(dim, stretched);
+}
+
+enum status cells_node_spacing(const struct cells *cells, const double *stretch, double *spacing,
+                               struct error *error)
 {
     int dim = cells->dim;
     NEW_SCRATCH(int64_t, visits, cells->node_count, error);
@@ -297,10 +311,10 @@ enum status cells_node_spacing(const struct cells *cells, double *spacing, struc
         const int32_t *v = cells->node + c * (dim + 1);
         for (int i = 0; i <= dim; i++) {
             for (int k = i + 1; k <= dim; k++) {
-                double length =
-                    vector_distance(dim, cells->x + (int64_t)v[k] * dim, cells->x + (int64_t)v[i] * dim);
-                spacing[v[i]] += length;
-                spacing[v[k]] += length;
+                double edge[3];
+                vector_subtract(dim, cells->x + (int64_t)v[k] * dim, cells->x + (int64_t)v[i] * dim, edge);
+                spacing[v[i]] += length_of(dim, stretch, v[i], edge);
+                spacing[v[k]] += length_of(dim, stretch, v[k], edge);
                 visits[v[i]]++;
                 visits[v[k]]++;
             }

@@ -73,7 +73,8 @@ MUST_CHECK enum status faces_mark(const struct faces *faces, int64_t count, cons
 MUST_CHECK enum status cells_across(const struct cells *cells, int32_t *across, struct error *error);
 
 /* spacing[node_count]: mean length of the cell edges at each node; 0 at nodes of no cell. */
-MUST_CHECK enum status cells_node_spacing(const struct cells *cells, double *spacing, struct error *error);
+MUST_CHECK enum status cells_node_spacing(const struct cells *cells, const double *stretch, double *spacing,
+                                          struct error *error);
 
 /* owner[size[0] * size[1] * size[2]], first axis fastest: the lowest cell that contains the grid point, or
  * -1. cells->x are in units of the grid, whose points have integer coordinates from 0; size[2] = 1 in 2D.

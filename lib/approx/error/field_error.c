@@ -318,7 +318,7 @@ enum status size_field_build(const struct cells *cells, const double *squared,
     RETURN_IF_ERROR(NEW_ARRAY(&field->size, cells->node_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&field->outer, cells->node_count * cells->dim, error));
     RETURN_IF_ERROR(faces_build(cells, true, &field->boundary, error));
-    RETURN_IF_ERROR(cells_node_spacing(cells, spacing, error));
+    RETURN_IF_ERROR(cells_node_spacing(cells, NULL, spacing, error));
     RETURN_IF_ERROR(node_sizes(cells, squared, spacing, request, field->size, error));
     boundary_normals(cells, &field->boundary, normal);
     move_outward(cells, normal, spacing, field->outer);

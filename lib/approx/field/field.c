@@ -21,7 +21,7 @@ enum status field_spacing(const struct cells *cells, double *spacing, struct err
     SCRATCH double *nearest = NULL;
     bool complete = cells->count > 0;
     if (cells->count > 0) {
-        RETURN_IF_ERROR(cells_node_spacing(cells, spacing, error));
+        RETURN_IF_ERROR(cells_node_spacing(cells, NULL, spacing, error));
         for (int64_t n = 0; n < cells->node_count; n++) {
             complete = complete && spacing[n] > 0.0;
         }
@@ -79,7 +79,8 @@ enum status field_table_at(const struct field_shapes *shapes, const struct visib
     if (gradients) {
         RETURN_IF_ERROR(NEW_ARRAY(&table->dphi, table->lists.ptr[count] * space->cells.dim, error));
     }
-    return shape_table(&shapes->shapes, space->cells.x, space->grid.radius, &table->lists, x, what,
+    return shape_table(&shapes->shapes, space->cells.x,
+                       (struct supports){space->grid.radius, space->grid.stretch}, &table->lists, x, what,
                        table->phi, table->dphi, error);
 }
 
@@ -89,8 +90,8 @@ enum status field_table_build(const struct field_shapes *shapes, const struct ce
 {
     FREED_BY(visibility_free) struct visibility space = {0};
     *table = (struct field_table){0};
-    RETURN_IF_ERROR(visibility_build(cells, shapes->radius, shapes->support.visibility, shapes->support.side,
-                                     &space, error));
+    RETURN_IF_ERROR(visibility_build(cells, shapes->supports, shapes->support.visibility,
+                                     shapes->support.side, &space, error));
     return field_table_at(shapes, &space, NULL, count, x, what, false, table, error);
 }
 

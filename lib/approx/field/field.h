@@ -9,7 +9,7 @@
 
 /* The shape functions of a field u_h = sum_j phi_j d_j. */
 struct field_shapes {
-    const double *radius; /* of the supports of the nodes, m; NULL: not known, and the others are defaults */
+    struct supports supports;       /* of the nodes; radius NULL: not known, and the others are defaults */
     struct support_options support; /* of the lists; its radius and factor are the defaults */
     struct mls shapes;              /* if different from support.mls */
 };

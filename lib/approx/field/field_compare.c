@@ -147,7 +147,7 @@ static enum status interpolate(const struct nodal_field *a, const struct nodal_f
     RETURN_IF_ERROR(field_spacing(&b->cells, spacing, error));
     RETURN_IF_ERROR(drop_outside(a, b, spacing, skip, comparison, points, error));
     RETURN_IF_ERROR(support_radii(&fit.support, b->cells.node_count, spacing, radius, error));
-    fit.radius = radius;
+    fit.supports.radius = radius;
     fit.shapes = fit.support.mls;
     RETURN_IF_ERROR(field_table_build(b->shapes != NULL ? b->shapes : &fit, &b->cells, comparison->count,
                                       points, "nodes of A within B", &table, error));

@@ -26,14 +26,14 @@ static enum status find_gradients(const struct nodal_field *field, double *gradi
     NEW_SCRATCH(double, radius, nodes, error);
     fit.support.mls.basis = BASIS_QUADRATIC;
     fit.shapes = fit.support.mls;
-    fit.radius = radius;
+    fit.supports.radius = radius;
     if (shapes == &fit) {
         NEW_SCRATCH(double, spacing, nodes, error);
         RETURN_IF_ERROR(field_spacing(cells, spacing, error));
         RETURN_IF_ERROR(support_radii(&fit.support, nodes, spacing, radius, error));
     }
-    RETURN_IF_ERROR(visibility_build(cells, shapes->radius, shapes->support.visibility, shapes->support.side,
-                                     &space, error));
+    RETURN_IF_ERROR(visibility_build(cells, shapes->supports, shapes->support.visibility,
+                                     shapes->support.side, &space, error));
     RETURN_IF_ERROR(field_table_at(shapes, &space, &places, nodes, cells->x, "nodes", true, &table, error));
     for (int64_t n = 0; n < nodes; n++) {
         for (int64_t p = table.lists.ptr[n]; p < table.lists.ptr[n + 1]; p++) {

@@ -42,8 +42,8 @@ void mls_work_free(struct mls_work *work)
 }
 
 /* Store phi_j = w_j p_j.c in ROW_PHI and slope_j p_j.c in ROW_SLOPE. With `gradients`, set the right-hand
- * sides of their coefficients, e_a - (d_a M) c = e_a + sum_j slope_j xi_a p_j.c p_j, one a for each lane.
- * Returns the largest defect of sum phi p = p(0), p linear. */
+ * sides of their coefficients, e_a - (d_a M) c = e_a + sum_j slope_j (A^2 xi)_a p_j.c p_j, one a for each
+ * lane. Returns the largest defect of sum phi p = p(0), p linear. */
 KERNEL_INLINE double values(int dim, int m, const double *c, bool gradients, const struct mls_point *point,
                             lanes *right)
 {
@@ -51,7 +51,7 @@ KERNEL_INLINE double values(int dim, int m, const double *c, bool gradients, con
     memset(sum, 0, sizeof sum);
     memset(defect, 0, sizeof defect);
     for (int64_t j = 0; j < point->padded; j += LANES) {
-        lanes xi[3], p[MLS_MAX_BASIS], projection, phi, slope;
+        lanes xi[3], turned[3], p[MLS_MAX_BASIS], projection, phi, slope;
         load_monomials(dim, m, point, j, xi, p);
         polynomial(dim, m, c, xi, &projection);
         load_row(point, ROW_WEIGHT, j, &phi);
@@ -64,11 +64,14 @@ KERNEL_INLINE double values(int dim, int m, const double *c, bool gradients, con
             load_row(point, ROW_SLOPE, j, &slope);
             slope *= projection;
             store_row(point, ROW_SLOPE, j, &slope);
+            for (int a = 0; a < dim; a++) {
+                load_row(point, ROW_TURNED + a, j, &turned[a]);
+            }
             UNROLL
             for (int k = 0; k < m; k++) {
                 lanes part = slope * p[k];
                 for (int a = 0; a < dim; a++) {
-                    sum[a][k] += part * xi[a];
+                    sum[a][k] += part * turned[a];
                 }
             }
         }
@@ -270,11 +273,12 @@ static void orthogonal_gradients(int dim, int m, const struct mls_factor *factor
         double right[MLS_MAX_BASIS] = {0.0}, g[MLS_MAX_BASIS];
         lanes sum[MLS_MAX_BASIS] = {{0.0}};
         for (int64_t j = 0; j < point->padded; j += LANES) {
-            lanes xi[3], p[MLS_MAX_BASIS], slope;
+            lanes xi[3], p[MLS_MAX_BASIS], slope, turned;
             load_monomials(dim, m, point, j, xi, p);
             load_row(point, ROW_SLOPE, j, &slope);
+            load_row(point, ROW_TURNED + a, j, &turned);
             for (int k = 0; k < m; k++) {
-                sum[k] += slope * xi[a] * p[k];
+                sum[k] += slope * turned * p[k];
             }
         }
         for (int k = 0; k < m; k++) {

@@ -8,13 +8,14 @@
  * units of x) becomes the dimensionless mu / s^4. */
 #pragma once
 
+#include "approx/points/point_grid.h"
 #include "base/status.h"
 
 #include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Weight functions, on the relative distance r = |x - x_j| / R_j within [0, 1): equation (1). */
+/* Weight functions, on the relative distance r = |A_j (x - x_j)| / R_j within [0, 1): equation (1). */
 enum weight_function {
     WEIGHT_QUARTIC,     /* 1 - 6 r^2 + 8 r^3 - 3 r^4 */
     WEIGHT_REGULARISED, /* Most and Bucher 2005, e = 1e-5: almost interpolates */
@@ -90,10 +91,10 @@ void mls_work_free(struct mls_work *work);
 
 /* The neighbours of one point. */
 struct mls_support {
-    const double *x;      /* the point, dim */
-    const double *nodes;  /* all nodes, row-major, dim each */
-    const double *radius; /* all support radii */
-    double widen;         /* factor on the radii at this point */
+    const double *x;          /* the point, dim */
+    const double *nodes;      /* all nodes, row-major, dim each */
+    struct supports supports; /* of all nodes */
+    double widen;             /* factor on the radii at this point */
     const int32_t *neighbours;
     int64_t count;
 };

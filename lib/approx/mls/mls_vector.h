@@ -11,7 +11,8 @@
 /* Rows of scratch. Their stride is at least the number of neighbours and MLS_PADDING. */
 enum mls_row {
     ROW_XI,
-    ROW_RATIO = ROW_XI + 3,
+    ROW_TURNED = ROW_XI + 3, /* A^2 xi */
+    ROW_RATIO = ROW_TURNED + 3,
     ROW_WEIGHT,
     ROW_SLOPE,
     ROW_PHI,
@@ -159,23 +160,42 @@ KERNEL_INLINE void store_row(const struct mls_point *point, int row, int64_t j, 
     memcpy(point->row + row * point->stride + j, v, sizeof *v);
 }
 
+/* A^2 xi of neighbour j, a node. */
+KERNEL_INLINE void turn_difference(const double *stretch, int64_t node, int dim, int64_t j,
+                                   struct mls_point *point)
+{
+    const double *xi = point->row + j, *A = stretch != NULL ? stretch + node * dim * dim : NULL;
+    double *turned = point->row + ROW_TURNED * point->stride + j, once[3] = {0.0};
+    for (int k = 0; k < dim * dim && A != NULL; k++) {
+        once[k / dim] += A[k] * xi[k % dim * point->stride];
+    }
+    for (int a = 0; a < dim; a++) {
+        turned[a * point->stride] = A != NULL ? 0.0 : xi[a * point->stride];
+        for (int b = 0; b < dim && A != NULL; b++) {
+            turned[a * point->stride] += A[a * dim + b] * once[b];
+        }
+    }
+}
+
 /* Differences of coordinates, and radii, in rows; the largest radius. */
 KERNEL_INLINE void gather(const struct mls_support *support, int dim, struct mls_point *point)
 {
-    double *xi = point->row, *radius = point->row + ROW_RATIO * point->stride;
+    double *xi = point->row, *turned = point->row + ROW_TURNED * point->stride;
+    double *radius = point->row + ROW_RATIO * point->stride;
     double largest = 0.0;
     for (int64_t j = 0; j < support->count; j++) {
         int64_t node = support->neighbours[j];
         for (int a = 0; a < dim; a++) {
             xi[a * point->stride + j] = support->nodes[node * dim + a] - support->x[a];
         }
-        double own = support->radius[node];
+        turn_difference(support->supports.stretch, node, dim, j, point);
+        double own = support->supports.radius[node];
         radius[j] = own;
         largest = own > largest ? own : largest;
     }
     for (int64_t j = support->count; j < point->padded; j++) {
         for (int a = 0; a < dim; a++) {
-            xi[a * point->stride + j] = 2.0 * largest * support->widen;
+            xi[a * point->stride + j] = turned[a * point->stride + j] = 2.0 * largest * support->widen;
         }
         radius[j] = largest;
     }
@@ -186,7 +206,7 @@ KERNEL_INLINE void gather(const struct mls_support *support, int dim, struct mls
     for (int64_t j = 0; j < point->padded; j++) {                                                            \
         double relative = 0.0, value, slope_over_r, square = ratio[j] * ratio[j];                            \
         for (int a = 0; a < dim; a++) {                                                                      \
-            relative += xi[a * stride + j] * xi[a * stride + j];                                             \
+            relative += xi[a * stride + j] * turned[a * stride + j];                                         \
         }                                                                                                    \
         relative *= square;                                                                                  \
         formula(relative < 1.0 ? relative : 1.0, &value, &slope_over_r);                                     \
@@ -194,17 +214,19 @@ KERNEL_INLINE void gather(const struct mls_support *support, int dim, struct mls
         slope[j] = relative < 1.0 ? slope_over_r * square : 0.0;                                             \
     }
 
-/* Scale the coordinates; set weights, and slopes: grad w = -slope xi / s. */
+/* Scale the coordinates; set weights, and slopes: grad w = -slope A^2 xi / s. */
 KERNEL_INLINE void weigh(enum weight_function function, double widen, int dim, struct mls_point *point)
 {
     int64_t stride = point->stride;
-    double *restrict xi = point->row, *restrict ratio = point->row + ROW_RATIO * stride;
+    double *restrict xi = point->row, *restrict turned = point->row + ROW_TURNED * stride;
+    double *restrict ratio = point->row + ROW_RATIO * stride;
     double *restrict weight = point->row + ROW_WEIGHT * stride, *restrict slope =
                                                                     point->row + ROW_SLOPE * stride;
     double inverse = 1.0 / point->scale, relative_scale = point->scale / widen;
     for (int a = 0; a < dim; a++) {
         for (int64_t j = 0; j < point->padded; j++) {
             xi[a * stride + j] *= inverse;
+            turned[a * stride + j] *= inverse;
         }
     }
     for (int64_t j = 0; j < point->padded; j++) {
@@ -284,7 +306,7 @@ KERNEL_INLINE void begin(const struct mls *mls, const struct mls_support *suppor
     regularise(mls, dim, m, point->scale, system);
 }
 
-/* Store s d_a phi_j = w_j p_j.g_a - slope_j xi_a p_j.c in
+/* Store s d_a phi_j = w_j p_j.g_a - slope_j (A^2 xi)_a p_j.c in
  * ROW_GRADIENT + a. Returns the largest defect of sum grad phi p = grad p(0), p linear. */
 KERNEL_INLINE double make_gradients(int dim, int m, const lanes *coefficient, const struct mls_point *point)
 {
@@ -302,9 +324,10 @@ KERNEL_INLINE double make_gradients(int dim, int m, const lanes *coefficient, co
         load_row(point, ROW_WEIGHT, j, &weight);
         load_row(point, ROW_SLOPE, j, &slope);
         for (int a = 0; a < dim; a++) {
-            lanes gradient;
+            lanes gradient, turned;
             polynomial(dim, m, g[a], xi, &gradient);
-            gradient = weight * gradient - slope * xi[a];
+            load_row(point, ROW_TURNED + a, j, &turned);
+            gradient = weight * gradient - slope * turned;
             store_row(point, ROW_GRADIENT + a, j, &gradient);
             for (int k = 0; k <= dim; k++) {
                 defect[a][k] += gradient * p[k];

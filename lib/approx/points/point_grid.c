@@ -209,10 +209,32 @@ enum status point_grid_query_box(const struct point_grid *grid, const double *lo
     return STATUS_OK;
 }
 
+/* Whether x is in the support of a node, by the ellipsoid. */
+static bool is_within(const struct point_grid *grid, const double *x, int64_t node, double factor)
+{
+    int dim = grid->dim;
+    double difference[3], square = 0.0, radius = factor * grid->radius[node];
+    vector_subtract(dim, x, grid->x + node * dim, difference);
+    for (int a = 0; a < dim; a++) {
+        double along = vector_dot(dim, grid->stretch + (node * dim + a) * dim, difference);
+        square += along * along;
+    }
+    return square < radius * radius;
+}
+
 enum status point_grid_query(const struct point_grid *grid, const double *x, double factor,
                              struct index_list *list, struct error *error)
 {
-    return point_grid_query_box(grid, x, x, factor, list, error);
+    int64_t kept = list->count;
+    RETURN_IF_ERROR(point_grid_query_box(grid, x, x, factor, list, error));
+    if (grid->stretch != NULL) {
+        for (int64_t i = kept; i < list->count; i++) {
+            list->index[kept] = list->index[i];
+            kept += is_within(grid, x, list->index[i], factor);
+        }
+        list->count = kept;
+    }
+    return STATUS_OK;
 }
 
 static void insert(struct nearest_nodes *nearest, int64_t most, int32_t node, double distance)

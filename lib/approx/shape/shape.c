@@ -33,11 +33,11 @@ static enum status tabulate(const struct mls *mls, struct mls_support support, c
     return STATUS_OK;
 }
 
-enum status shape_table(const struct mls *mls, const double *nodes, const double *radius,
+enum status shape_table(const struct mls *mls, const double *nodes, struct supports supports,
                         const struct neighbours *neighbours, const double *x, const char *what, double *phi,
                         double *dphi, struct error *error)
 {
-    const struct mls_support support = {.nodes = nodes, .radius = radius};
+    const struct mls_support support = {.nodes = nodes, .supports = supports};
     struct first_failure failure = {STATUS_OK};
     int64_t count = neighbours->count;
 #pragma omp parallel for schedule(dynamic, 1)

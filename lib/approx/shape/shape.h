@@ -9,7 +9,7 @@
 /* phi[ptr[count]] and, unless NULL, dphi[ptr[count] * dim] (1/m) at the points x[count * dim]. `what` names
  * the points in messages. STATUS_VERDICT, naming the first such point, if a point has too few neighbours or
  * an ill-conditioned moment matrix. Threaded; the same bits for any number of threads. */
-MUST_CHECK enum status shape_table(const struct mls *mls, const double *nodes, const double *radius,
+MUST_CHECK enum status shape_table(const struct mls *mls, const double *nodes, struct supports supports,
                                    const struct neighbours *neighbours, const double *x, const char *what,
                                    double *phi, double *dphi, struct error *error);
 

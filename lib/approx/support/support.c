@@ -84,6 +84,26 @@ static double spacing_within(const struct support_options *options, const struct
     return farthest * pow(unit_ball / (double)count, 1.0 / grid->dim);
 }
 
+/* |A^-1 g|^2 of a gradient, with A of a node: by Cramer's rule. */
+static double square_in_support(int dim, const double *stretch, int64_t node, const double *g)
+{
+    double row[4][3] = {{0.0}}, square = 0.0;
+    if (stretch == NULL) {
+        return vector_dot(dim, g, g);
+    }
+    row[2][2] = 1.0;
+    memcpy(row[3], g, (size_t)dim * sizeof *g);
+    for (int a = 0; a < dim; a++) {
+        memcpy(row[a], stretch + (node * dim + a) * dim, (size_t)dim * sizeof *g);
+    }
+    double whole = determinant3(row[0], row[1], row[2]);
+    for (int a = 0; a < dim; a++) {
+        double part = determinant3(row[a == 0 ? 3 : 0], row[a == 1 ? 3 : 1], row[a == 2 ? 3 : 2]) / whole;
+        square += part * part;
+    }
+    return square;
+}
+
 /* Judge a support: the verdict on its number of nodes and moment matrix, and the largest gradient times the
  * spacing. */
 static enum status judge(const struct support_options *options, const struct point_grid *grid,
@@ -92,7 +112,7 @@ static enum status judge(const struct support_options *options, const struct poi
 {
     struct mls_support support = {.x = x,
                                   .nodes = grid->x,
-                                  .radius = grid->radius,
+                                  .supports = {grid->radius, grid->stretch},
                                   .widen = found->widen,
                                   .neighbours = index,
                                   .count = count};
@@ -106,7 +126,7 @@ static enum status judge(const struct support_options *options, const struct poi
     RETURN_IF_ERROR(
         mls_evaluate(&options->mls, &support, &worker->work, NULL, worker->gradient, &found->verdict, error));
     for (int64_t i = 0; i < count && found->verdict == MLS_GOOD; i++) {
-        double square = vector_dot(dim, worker->gradient + i * dim, worker->gradient + i * dim);
+        double square = square_in_support(dim, grid->stretch, index[i], worker->gradient + i * dim);
         largest2 = square > largest2 ? square : largest2;
     }
     found->steepness = sqrt(largest2) * spacing_within(options, grid, x, index, count, found->widen);

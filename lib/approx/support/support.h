@@ -44,6 +44,13 @@ struct neighbours {
 MUST_CHECK enum status nodes_spacing(int dim, int64_t node_count, const double *x, double *spacing,
                                      struct error *error);
 
+/* (*stretch)[node_count * dim * dim], to be freed: A of each node's support (point_grid.h), so that supports
+ * are as long as the cells around the node where these are flat: with the mean T of x (x) x over their edges,
+ * whose roots l_1 >= l_2, .. of eigenvalues are lengths along the eigenvectors, A has the eigenvalues
+ * max(1, l_1 / (dim l_i)). A lattice of cubes that are cut along one diagonal has l_1 / l_i = 2, in 2D 1.73.
+ * NULL where all A are 1. */
+MUST_CHECK enum status support_stretch(const struct cells *cells, double **stretch, struct error *error);
+
 /* radius[node_count], m, from the options and the local spacing. */
 MUST_CHECK enum status support_radii(const struct support_options *options, int64_t node_count,
                                      const double *spacing, double *radius, struct error *error);

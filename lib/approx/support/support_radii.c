@@ -1,7 +1,11 @@
 #include "approx/support/support.h"
 
+#include "approx/cells/face_edges.h"
 #include "base/box.h"
+#include "base/eigen.h"
 #include "base/memory.h"
+#include "base/round_off.h"
+#include "base/vector.h"
 
 #include <math.h>
 
@@ -28,6 +32,65 @@ enum status nodes_spacing(int dim, int64_t node_count, const double *x, double *
             spacing[n] += nearest.distance[i];
         }
         spacing[n] /= (double)(nearest.count - 1);
+    }
+    return STATUS_OK;
+}
+
+/* T[node_count * dim * dim]: the sum of x (x) x over the edges of the cells at each node. */
+static void sum_edges(const struct cells *cells, double *T)
+{
+    int dim = cells->dim;
+    for (int64_t c = 0; c < cells->count; c++) {
+        const int32_t *v = cells->node + c * (dim + 1);
+        double sum[9] = {0.0}, edge[3];
+        for (int e = 0; e < CELL_EDGES(dim); e++) {
+            vector_subtract(dim, cells->x + (int64_t)v[cell_edge_ends[e][1]] * dim,
+                            cells->x + (int64_t)v[cell_edge_ends[e][0]] * dim, edge);
+            for (int k = 0; k < dim * dim; k++) {
+                sum[k] += edge[k / dim] * edge[k % dim];
+            }
+        }
+        for (int k = 0; k <= dim; k++) {
+            add_scaled(dim * dim, 1.0, sum, T + (int64_t)v[k] * dim * dim);
+        }
+    }
+}
+
+/* From T of a node its A, in place; whether it is not 1. */
+static bool set_stretch(int dim, double *A)
+{
+    double value[3], V[9], longest = 0.0;
+    bool flat = false;
+    eigen_symmetric(dim, A, value, V);
+    for (int i = 0; i < dim; i++) {
+        longest = fmax(longest, value[i]);
+    }
+    for (int k = 0; k < dim * dim; k++) {
+        A[k] = k / dim == k % dim ? 1.0 : 0.0;
+    }
+    for (int i = 0; i < dim; i++) {
+        double more = sqrt(longest / fmax(value[i], 1e-12 * longest)) - dim;
+        for (int k = 0; k < dim * dim && more > COARSE_ROUND_OFF; k++) {
+            A[k] += more * V[k / dim * dim + i] * V[k % dim * dim + i];
+        }
+        flat = flat || more > COARSE_ROUND_OFF;
+    }
+    return flat;
+}
+
+enum status support_stretch(const struct cells *cells, double **stretch, struct error *error)
+{
+    int64_t size = (int64_t)cells->dim * cells->dim;
+    bool any = false;
+    *stretch = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(stretch, cells->node_count * size, error));
+    sum_edges(cells, *stretch);
+    for (int64_t n = 0; n < cells->node_count; n++) {
+        any = set_stretch(cells->dim, *stretch + n * size) || any;
+    }
+    if (!any) {
+        FREE_ALL(*stretch);
+        *stretch = NULL;
     }
     return STATUS_OK;
 }

@@ -120,7 +120,7 @@ static enum status note_face(struct visibility *visibility, int64_t cell, int ve
     return STATUS_OK;
 }
 
-enum status visibility_build(const struct cells *cells, const double *radius, enum visibility_rule rule,
+enum status visibility_build(const struct cells *cells, struct supports supports, enum visibility_rule rule,
                              const int32_t *cell_side, struct visibility *visibility, struct error *error)
 {
     FREED_BY(index_list_free) struct index_list near = {0};
@@ -131,7 +131,8 @@ enum status visibility_build(const struct cells *cells, const double *radius, en
         *visibility = (struct visibility){.cells = *cells};
     }
     RETURN_IF_ERROR(
-        point_grid_build(&visibility->grid, cells->dim, cells->node_count, cells->x, radius, error));
+        point_grid_build(&visibility->grid, cells->dim, cells->node_count, cells->x, supports.radius, error));
+    visibility->grid.stretch = supports.stretch;
     if (visibility->across == NULL) {
         return STATUS_OK;
     }

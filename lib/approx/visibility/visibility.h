@@ -35,9 +35,9 @@ struct visibility {
                             may hide the node from a point on their side; infinite: none does */
 };
 
-/* radius[node_count], m; cell_side[count], or NULL. Errors: STATUS_INPUT for cells that share a face with
+/* supports: of all nodes; cell_side[count], or NULL. Errors: STATUS_INPUT for cells that share a face with
  * more than one other; STATUS_SYSTEM (memory). */
-MUST_CHECK enum status visibility_build(const struct cells *cells, const double *radius,
+MUST_CHECK enum status visibility_build(const struct cells *cells, struct supports supports,
                                         enum visibility_rule rule, const int32_t *cell_side,
                                         struct visibility *visibility, struct error *error);
 void visibility_free(struct visibility *visibility);

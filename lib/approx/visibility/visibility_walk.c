@@ -180,7 +180,7 @@ enum status visibility_locate(const struct visibility *visibility, const double 
     int ahead;
     work->own.count = 0;
     work->outside = false;
-    RETURN_IF_ERROR(point_grid_query(&visibility->grid, x, 1.0, &near, error));
+    RETURN_IF_ERROR(point_grid_query_box(&visibility->grid, x, x, 1.0, &near, error));
     for (int64_t i = 0; i < near.count; i++) {
         for (int64_t s = visibility->star_ptr[near.index[i]]; s < visibility->star_ptr[near.index[i] + 1];
              s++) {

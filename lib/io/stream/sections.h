@@ -41,7 +41,7 @@ struct section_kind {
     enum section_stage stage;
 };
 
-enum { SECTION_KINDS = 49 };
+enum { SECTION_KINDS = 51 };
 extern const struct section_kind section_kinds[SECTION_KINDS];
 
 /* The entry of a section; of a section X.frame.K or X.frames that of X. NULL: not in the table. */

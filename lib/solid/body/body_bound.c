@@ -3,7 +3,9 @@
 #include "base/chunks.h"
 #include "base/vector.h"
 #include "solid/body/merged_cells.h"
+#include "solid/body/nodal_volume.h"
 #include "solid/body/stress.h"
+#include "solid/material/tensor.h"
 
 #include <math.h>
 #include <string.h>
@@ -12,9 +14,9 @@ enum { NODES_FOR_THREAD = 500 }; /* see chunks_of */
 
 /* Along the gradient g of a shape function the energy of a point has the second derivative along |C g|^2 -
  * shear / 3 |g|^2, C the cofactor of F, and that of the variance's, bounded by twice that of the value at one
- * vertex, smoothing |g|^2. */
+ * vertex, smoothing |Z g|^2. */
 struct bound {
-    double C[9], along, shear, smoothing;
+    double C[9], Z[9], along, shear, smoothing;
 };
 
 /* The energy within a cell by mu / 2 |grad N_k|^2, per volume, where the field is one at vertex k and zero at
@@ -22,6 +24,23 @@ struct bound {
 static double vertex_variance(int dim)
 {
     return dim == 2 ? 1.0 : 0.6;
+}
+
+/* Of a change v (x) g the energy (10) is at most m / 2 |v|^2 |Z g|^2: its strain M = Z sym(F^T v (x) g) Z has
+ * squares of at most |Z F^T v|^2 |Z g|^2, and so has its trace. Sets Z. */
+static double variance_modulus(const struct material *material, const double F[9], double Z[9])
+{
+    double FZ[9], largest = 0.0;
+    stress_limit_stretch(F, Z);
+    multiply(F, Z, FZ);
+    for (int a = 0; a < 3; a++) { /* Gershgorin's bound of the eigenvalues of F Z Z F^T */
+        double sum = 0.0;
+        for (int b = 0; b < 3; b++) {
+            sum += fabs(vector_dot(3, FZ + 3 * a, FZ + 3 * b));
+        }
+        largest = fmax(largest, sum);
+    }
+    return largest * (nodal_volume_modulus(material) + 4.0 / 3.0 * material->shear_modulus);
 }
 
 static struct bound bound_at(const struct body *body, int64_t q, bool rest)
@@ -43,19 +62,24 @@ static struct bound bound_at(const struct body *body, int64_t q, bool rest)
     }
     bound.along = body->weight[q] * bulk + 5.0 / 9.0 * vector_dot(9, F, F) * bound.shear / (J * J);
     if (body->smoothed) {
-        bound.smoothing = 2.0 * body->weight[q] * vertex_variance(body->dim) * material->shear_modulus;
+        bound.smoothing =
+            2.0 * body->weight[q] * vertex_variance(body->dim) * variance_modulus(material, F, bound.Z);
     }
     return bound;
 }
 
 static double bound_along(const struct bound *bound, int dim, const double *g)
 {
-    double along = 0.0, g2 = vector_dot(dim, g, g);
+    double along = 0.0, smoothing = 0.0, g2 = vector_dot(dim, g, g);
     for (int a = 0; a < dim; a++) {
         double change = vector_dot(dim, bound->C + 3 * a, g);
         along += bound->along * change * change;
     }
-    return fmax(along - bound->shear / 3.0 * g2, 0.0) + bound->smoothing * g2;
+    for (int a = 0; a < dim && bound->smoothing > 0.0; a++) {
+        double change = vector_dot(dim, bound->Z + 3 * a, g);
+        smoothing += bound->smoothing * change * change;
+    }
+    return fmax(along - bound->shear / 3.0 * g2, 0.0) + smoothing;
 }
 
 /* Of a node of smoothed cells, by the linear shape functions: over the cells around it, with those that these

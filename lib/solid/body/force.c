@@ -219,7 +219,7 @@ static double point_energy(const struct body *body, const struct block *block, i
     stress_gradient(body, q, F);
     double W = material_isochoric_energy(material, F), active = stress_active_energy(body, q, F);
     double coupling = stress_coupling_energy(body, q, F, J);
-    double varying = body->smoothed ? stress_variance_energy(body, q) : 0.0;
+    double volumetric = 0.0, varying = body->smoothed ? stress_variance_energy(body, q, &volumetric) : 0.0;
     if (block->relaxes) {
         double whole = body->weight[q] * (W + coupling) + varying;
         varying = prony_energy(body, q, whole, varying, dissipated);
@@ -228,7 +228,7 @@ static double point_energy(const struct body *body, const struct block *block, i
     double sum = W + active;
     sum += coupling;
     sum += body->averaged ? nodal_volume_energy(body, q) : material_volume_energy(material, J);
-    return body->weight[q] * sum + varying;
+    return body->weight[q] * sum + varying + volumetric;
 }
 
 /* The sum of the energies of all blocks, of which each process has its own. */

@@ -320,28 +320,28 @@ KERNEL_INLINE void kernel_cell_forces(struct body *body, int64_t number, int dim
     block_edges edges, at_edges;
     block_vertices vertices, at_vertices;
     read_cells(body, block, dim, edges, vertices);
-    for (int64_t i = 0; i < block->point_count && relaxes; i += LANES) {
-        add_rest_stresses(body, block->first_point + i, i, dim, (const double(*)[BLOCK_MOST_POINTS])edges,
-                          (const double(*)[BLOCK_MOST_POINTS])vertices, P);
+    for (int64_t i = 0; i < block->point_count; i += LANES) {
+        variance_forces(body, block->first_point + i, i, dim, relaxes,
+                        (const double(*)[BLOCK_MOST_POINTS])edges,
+                        (const double(*)[BLOCK_MOST_POINTS])vertices, at_edges, P);
     }
     if (body->cells.group != NULL) {
         merged_cells_stresses(body, block, P, T);
     }
     for (int64_t i = 0; i < block->point_count; i += LANES) {
-        lanes grad_N[12], mean[3], interpolant[3], on_edge[6], on_vertex[4], V[6][6];
-        int64_t q = block->first_point + i;
-        load_linear_gradients(body, q, dim, grad_N);
-        load_variance_matrix(body, q, dim, grad_N, relaxes, V);
+        lanes grad_N[12], mean[3], interpolant[3], on_edge[6], on_vertex[4], force;
+        load_linear_gradients(body, block->first_point + i, dim, grad_N);
         for (int a = 0; a < dim; a++) {
             for (int b = 0; b < dim; b++) {
                 LOAD(mean[b], P[a * dim + b] + i);
                 LOAD(interpolant[b], T[a * dim + b] + i);
             }
             cell_forces(mean, interpolant, dim, grad_N, on_edge, on_vertex);
-            add_variance_forces(body, q, (const double(*)[BLOCK_MOST_POINTS])edges,
-                                (const double(*)[BLOCK_MOST_POINTS])vertices, i, dim, a, relaxes, V, on_edge,
-                                on_vertex);
             for (int e = 0; e < CELL_EDGES(dim); e++) {
+                LOAD(force, at_edges[e * dim + a] + i);
+                on_edge[e] += force;
+                on_vertex[cell_edge_ends[e][0]] -= 0.5 * force;
+                on_vertex[cell_edge_ends[e][1]] -= 0.5 * force;
                 STORE(at_edges[e * dim + a] + i, on_edge[e]);
             }
             for (int k = 0; k <= dim; k++) {

@@ -3,45 +3,32 @@
 
 #include "solid/body/kernel_variance.h"
 
-/* In the cells at i and q: add (10) to X, and F^T s_e to x. */
+/* In the cells at i and q: add the derivatives of (10), but for its bulk modulus, to X, and F^T s_e to x. */
 KERNEL_INLINE void add_variance_state(const struct body *body, int64_t q, int64_t i, int dim,
-                                      const block_edges edges, const block_vertices vertices,
-                                      const lanes F[9], prony_rows X, prony_rows x)
+                                      const block_edges edges, const block_vertices vertices, prony_rows X,
+                                      prony_rows x)
 {
-    lanes grad_N[12], V[6][6], C[9], J, s[3][6], sigma[3][6], force[3][6];
-    lanes_cofactor(F, dim, C);
-    lanes_determinant(F, C, dim, &J);
-    load_linear_gradients(body, q, dim, grad_N);
-    load_variance_matrix(body, q, dim, grad_N, false, V);
-    for (int a = 0; a < dim; a++) {
-        load_offsets(edges, vertices, i, dim, a, s[a]);
-    }
-    for (int k = 0; k < CELL_EDGES(dim) * dim; k++) {
-        int e = k / dim, b = k % dim;
-        lanes strain = F[b] * s[0][e];
-        sigma[b][e] = C[b] * s[0][e];
-        for (int a = 1; a < dim; a++) {
-            strain += F[a * dim + b] * s[a][e];
-            sigma[b][e] += C[a * dim + b] * s[a][e];
-        }
-        sigma[b][e] /= J;
-        STORE(x[PRONY_OFFSETS + k] + i, strain);
-    }
-    for (int k = 0; k < CELL_EDGES(dim) * dim; k++) {
-        int e = k / dim, b = k % dim;
-        force[b][e] = V[e][0] * sigma[b][0];
-        for (int f = 1; f < CELL_EDGES(dim); f++) {
-            force[b][e] += V[e][f] * sigma[b][f];
-        }
-        STORE(X[PRONY_OFFSETS + k] + i, force[b][e]);
-    }
+    struct variance v;
+    lanes shear, S[9];
+    LOAD(shear, body->cells.variance_shear + q);
+    vary_cells(body, q, i, dim, edges, vertices, EDGE_OFFSET * EDGE_OFFSET * shear, (lanes){0.0}, &v);
+    variance_stress(dim, &v, S);
     for (int c = 0; c < PRONY_RATIO; c++) {
         lanes stress;
         LOAD(stress, X[c] + i);
-        for (int e = 0; e < CELL_EDGES(dim) && tensor_row[c] < dim && tensor_column[c] < dim; e++) {
-            stress -= sigma[tensor_row[c]][e] * force[tensor_column[c]][e];
+        if (tensor_row[c] < dim && tensor_column[c] < dim) {
+            stress += S[tensor_row[c] * dim + tensor_column[c]];
         }
         STORE(X[c] + i, stress);
+    }
+    for (int e = 0; e < CELL_EDGES(dim); e++) {
+        lanes turned[3], stress[3];
+        lanes_apply(dim, true, v.F, v.offset[e], turned);
+        lanes_apply(dim, false, v.Z, v.along[e], stress);
+        for (int b = 0; b < dim; b++) {
+            STORE(x[PRONY_OFFSETS + e * dim + b] + i, turned[b]);
+            STORE(X[PRONY_OFFSETS + e * dim + b] + i, stress[b]);
+        }
     }
 }
 
@@ -77,7 +64,7 @@ KERNEL_INLINE void kernel_prony_state(const struct body *body, const struct bloc
         STORE(x[PRONY_RATIO] + i, value);
         if (body->smoothed) {
             add_variance_state(body, q, i, dim, (const double(*)[BLOCK_MOST_POINTS])edges,
-                               (const double(*)[BLOCK_MOST_POINTS])vertices, F, X, x);
+                               (const double(*)[BLOCK_MOST_POINTS])vertices, X, x);
         }
     }
 }

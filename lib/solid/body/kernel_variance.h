@@ -43,40 +43,6 @@ KERNEL_INLINE void load_linear_gradients(const struct body *body, int64_t q, int
     }
 }
 
-/* V times factor, where sum_k |R_k - R|^2 = s . V s with the offsets s_e of one component of the field. With
- * h_e = grad N_i + grad N_j, e from i to j, V_ef is -h_e . h_f / (dim + 1), and more for each vertex that e
- * and f share: the product of the gradients of N at their other ends. */
-KERNEL_INLINE void variance_matrix(int dim, const lanes grad_N[12], const lanes *factor, lanes V[6][6])
-{
-    lanes product[4][4];
-    for (int k = 0; k <= dim; k++) {
-        for (int l = 0; l <= k; l++) {
-            product[k][l] = grad_N[3 * k] * grad_N[3 * l];
-            for (int b = 1; b < dim; b++) {
-                product[k][l] += grad_N[3 * k + b] * grad_N[3 * l + b];
-            }
-            product[k][l] *= *factor;
-            product[l][k] = product[k][l];
-        }
-    }
-    for (int e = 0; e < CELL_EDGES(dim); e++) {
-        for (int f = 0; f <= e; f++) {
-            lanes with_end[2], sum;
-            for (int i = 0; i < 2; i++) {
-                int k = cell_edge_ends[e][i];
-                with_end[i] = product[k][cell_edge_ends[f][0]] + product[k][cell_edge_ends[f][1]];
-            }
-            sum = (-1.0 / (dim + 1)) * (with_end[0] + with_end[1]);
-            for (int i = 0; i < 4; i++) {
-                if (cell_edge_ends[e][i / 2] == cell_edge_ends[f][i % 2]) {
-                    sum += product[cell_edge_ends[e][1 - i / 2]][cell_edge_ends[f][1 - i % 2]];
-                }
-            }
-            V[e][f] = V[f][e] = sum;
-        }
-    }
-}
-
 /* The factors of viscoelastic cells from q on. */
 KERNEL_INLINE void load_factors(const struct body *body, int64_t q, lanes *factor)
 {
@@ -86,79 +52,193 @@ KERNEL_INLINE void load_factors(const struct body *body, int64_t q, lanes *facto
     }
 }
 
-/* V in the cells from q on, times what makes s . V s / 2 the energy of s_e = m_e - (v_i + v_j) / 2. */
-KERNEL_INLINE void load_variance_matrix(const struct body *body, int64_t q, int dim, const lanes grad_N[12],
-                                        bool relaxes, lanes V[6][6])
-{
-    lanes modulus, shear, bulk;
-    load_moduli(body, q, &shear, &bulk);
-    LOAD(modulus, body->cells.variance_weight + q);
-    modulus *= EDGE_OFFSET * EDGE_OFFSET * VARIANCE_FACTOR(dim) * shear;
-    if (relaxes) {
-        load_factors(body, q, &shear);
-        modulus *= shear;
-    }
-    variance_matrix(dim, grad_N, &modulus, V);
-}
-
-/* The s_e of component a in the cells at i. */
+#include <stdlib.h>
+/* The s_e of each component in the cells at i. */
 KERNEL_INLINE void load_offsets(const block_edges edges, const block_vertices vertices, int64_t i, int dim,
-                                int a, lanes offset[6])
+                                lanes offset[6][3])
 {
-    lanes value[4];
-    for (int k = 0; k <= dim; k++) {
-        LOAD(value[k], vertices[k * dim + a] + i);
-    }
-    for (int e = 0; e < CELL_EDGES(dim); e++) {
-        LOAD(offset[e], edges[e * dim + a] + i);
-        offset[e] -= 0.5 * (value[cell_edge_ends[e][0]] + value[cell_edge_ends[e][1]]);
-    }
-}
-
-/* Add the forces of component a of the energy s . V s / 2 and, of viscoelastic cells, of s_e . F rest_e
- * (prony.h);
- */
-KERNEL_INLINE void add_variance_forces(const struct body *body, int64_t q, const block_edges edges,
-                                       const block_vertices vertices, int64_t i, int dim, int a, bool relaxes,
-                                       lanes V[6][6], lanes on_edge[6], lanes on_vertex[4])
-{
-    lanes offset[6], F[3], rest;
-    load_offsets(edges, vertices, i, dim, a, offset);
-    for (int b = 0; b < dim && relaxes; b++) {
-        LOAD(F[b], body->F + (a * dim + b) * body->point_count + q);
-    }
-    for (int e = 0; e < CELL_EDGES(dim); e++) {
-        lanes force = V[e][0] * offset[0];
-        for (int f = 1; f < CELL_EDGES(dim); f++) {
-            force += V[e][f] * offset[f];
-        }
-        for (int b = 0; b < dim && relaxes; b++) {
-            LOAD(rest, body->prony.rest + (PRONY_OFFSETS + e * dim + b) * body->point_count + q);
-            force += F[b] * rest;
-        }
-        on_edge[e] += force;
-        force *= 0.5;
-        on_vertex[cell_edge_ends[e][0]] -= force;
-        on_vertex[cell_edge_ends[e][1]] -= force;
-    }
-}
-
-/* and the stress of the latter on F, in the cells at i and q. */
-KERNEL_INLINE void add_rest_stresses(const struct body *body, int64_t q, int64_t i, int dim,
-                                     const block_edges edges, const block_vertices vertices, block_rows P)
-{
-    const double *rest = body->prony.rest + PRONY_OFFSETS * body->point_count + q;
     for (int a = 0; a < dim; a++) {
-        lanes offset[6];
-        load_offsets(edges, vertices, i, dim, a, offset);
-        for (int b = 0; b < dim; b++) {
-            lanes stress, of_edge;
-            LOAD(stress, P[a * dim + b] + i);
-            for (int e = 0; e < CELL_EDGES(dim); e++) {
-                LOAD(of_edge, rest + (e * dim + b) * body->point_count);
-                stress += offset[e] * of_edge;
-            }
-            STORE(P[a * dim + b] + i, stress);
+        lanes value[4];
+        for (int k = 0; k <= dim; k++) {
+            LOAD(value[k], vertices[k * dim + a] + i);
         }
+        for (int e = 0; e < CELL_EDGES(dim); e++) {
+            LOAD(offset[e][a], edges[e * dim + a] + i);
+            offset[e][a] -= 0.5 * (value[cell_edge_ends[e][0]] + value[cell_edge_ends[e][1]]);
+        }
+    }
+}
+
+/* Z = 4 (3 + F^T F)^-1 */
+KERNEL_INLINE void limit_stretch(int dim, const lanes F[9], lanes Z[9])
+{
+    lanes sum[9], cofactors[9], determinant;
+    for (int k = 0; k < dim * dim; k++) {
+        sum[k] = (lanes){0.0} + (k / dim == k % dim ? 3.0 : 0.0);
+        for (int a = 0; a < dim; a++) {
+            sum[k] += F[a * dim + k / dim] * F[a * dim + k % dim];
+        }
+    }
+    lanes_cofactor(sum, dim, cofactors);
+    lanes_determinant(sum, cofactors, dim, &determinant);
+    for (int k = 0; k < dim * dim; k++) {
+        Z[k] = 4.0 * cofactors[k] / determinant;
+    }
+}
+
+/* product = A B */
+KERNEL_INLINE void lanes_product(int dim, const lanes A[9], const lanes B[9], lanes product[9])
+{
+    for (int k = 0; k < dim * dim; k++) {
+        product[k] = A[k / dim * dim] * B[k % dim];
+        for (int c = 1; c < dim; c++) {
+            product[k] += A[k / dim * dim + c] * B[c * dim + k % dim];
+        }
+    }
+}
+
+/* result = A v, or A^T v. */
+KERNEL_INLINE void lanes_apply(int dim, bool transposed, const lanes A[9], const lanes v[3], lanes result[3])
+{
+    for (int a = 0; a < dim; a++) {
+        result[a] = A[transposed ? a : a * dim] * v[0];
+        for (int b = 1; b < dim; b++) {
+            result[a] += A[transposed ? b * dim + a : a * dim + b] * v[b];
+        }
+    }
+}
+
+/* The variance (10) in the cells at i and q. */
+struct variance {
+    lanes F[9], Z[9], FZ[9], offset[6][3]; /* s_e */
+    lanes along[6][3];                     /* y_e: the derivative of W_v by F^T s_e is Z y_e, */
+    lanes product[9]; /* Q = sum_k T_k M_k: that by E = (F^T F - 1) / 2 is -(Z Q + Q^T Z) / 2 */
+};
+
+/* M_k, not symmetric yet: with the gradients h_l = Z grad N_l and Z F^T s_e. */
+KERNEL_INLINE void vary_gradients(int dim, const lanes h[4][3], const struct variance *v, lanes M[4][9])
+{
+    lanes mean[9], turned[3];
+    for (int b = 0; b < dim * dim; b++) {
+        M[0][b] = M[1][b] = M[2][b] = M[3][b] = (lanes){0.0};
+    }
+    for (int e = 0; e < CELL_EDGES(dim); e++) {
+        int k = cell_edge_ends[e][0], l = cell_edge_ends[e][1];
+        lanes_apply(dim, true, v->FZ, v->offset[e], turned);
+        for (int b = 0; b < dim * dim; b++) {
+            M[k][b] += turned[b / dim] * h[l][b % dim];
+            M[l][b] += turned[b / dim] * h[k][b % dim];
+        }
+    }
+    for (int b = 0; b < dim * dim; b++) {
+        mean[b] = M[0][b];
+        for (int k = 1; k <= dim; k++) {
+            mean[b] += M[k][b];
+        }
+        mean[b] *= 1.0 / (dim + 1);
+        for (int k = 0; k <= dim; k++) {
+            M[k][b] -= mean[b];
+        }
+    }
+}
+
+/* M becomes the stress T of the strain sym M; T sym M is added to Q. */
+KERNEL_INLINE void stress_vertex(int dim, lanes shear, lanes bulk, lanes M[9], lanes Q[9])
+{
+    lanes strain[9], product[9], trace = M[0];
+    for (int a = 1; a < dim; a++) {
+        trace += M[a * dim + a];
+    }
+    trace *= bulk - 2.0 / 3.0 * shear;
+    for (int k = 0; k < dim * dim; k++) {
+        strain[k] = 0.5 * (M[k] + M[k % dim * dim + k / dim]);
+    }
+    for (int k = 0; k < dim * dim; k++) {
+        M[k] = 2.0 * shear * strain[k] + (k / dim == k % dim ? trace : (lanes){0.0});
+    }
+    lanes_product(dim, M, strain, product);
+    for (int k = 0; k < dim * dim; k++) {
+        Q[k] += product[k];
+    }
+}
+
+/* With these moduli. */
+KERNEL_INLINE void vary_cells(const struct body *body, int64_t q, int64_t i, int dim, const block_edges edges,
+                              const block_vertices vertices, lanes shear, lanes bulk, struct variance *v)
+{
+    lanes grad_N[12], h[4][3], M[4][9], other[3];
+    load_matrix(body->F + q, body->point_count, dim, v->F);
+    load_offsets(edges, vertices, i, dim, v->offset);
+    load_linear_gradients(body, q, dim, grad_N);
+    limit_stretch(dim, v->F, v->Z);
+    lanes_product(dim, v->F, v->Z, v->FZ);
+    for (int k = 0; k <= dim; k++) {
+        lanes_apply(dim, false, v->Z, grad_N + 3 * k, h[k]);
+    }
+    vary_gradients(dim, (const lanes(*)[3])h, v, M);
+    memset(v->product, 0, sizeof v->product);
+    for (int k = 0; k <= dim; k++) {
+        stress_vertex(dim, shear, bulk, M[k], v->product);
+    }
+    for (int e = 0; e < CELL_EDGES(dim); e++) {
+        int k = cell_edge_ends[e][0], l = cell_edge_ends[e][1];
+        lanes_apply(dim, false, M[k], h[l], v->along[e]);
+        lanes_apply(dim, false, M[l], h[k], other);
+        for (int a = 0; a < dim; a++) {
+            v->along[e][a] += other[a];
+        }
+    }
+}
+
+/* S, the derivative by E. */
+KERNEL_INLINE void variance_stress(int dim, const struct variance *v, lanes S[9])
+{
+    lanes product[9];
+    lanes_product(dim, v->Z, v->product, product);
+    for (int k = 0; k < dim * dim; k++) {
+        S[k] = -0.5 * (product[k] + product[k % dim * dim + k / dim]);
+    }
+}
+
+/* The forces of the variance on the s_e, into at_edges, and its stress on F, added to P, in the cells at i
+ * and q; of viscoelastic cells with what their histories add (prony.h): on F as much as is not in P yet. */
+KERNEL_INLINE void variance_forces(const struct body *body, int64_t q, int64_t i, int dim, bool relaxes,
+                                   const block_edges edges, const block_vertices vertices,
+                                   block_edges at_edges, block_rows P)
+{
+    struct variance v;
+    lanes shear, bulk, factor, rest[3], force[3], more[3], S[9], outer[9] = {{0.0}}, stress[9], turned[9];
+    LOAD(shear, body->cells.variance_shear + q);
+    LOAD(bulk, body->cells.variance_bulk + q);
+    if (relaxes) {
+        load_factors(body, q, &factor);
+        shear *= factor;
+    }
+    vary_cells(body, q, i, dim, edges, vertices, EDGE_OFFSET * EDGE_OFFSET * shear,
+               EDGE_OFFSET * EDGE_OFFSET * bulk, &v);
+    variance_stress(dim, &v, S);
+    lanes_product(dim, v.F, S, stress);
+    for (int e = 0; e < CELL_EDGES(dim); e++) {
+        lanes_apply(dim, false, v.FZ, v.along[e], force);
+        for (int b = 0; b < dim && relaxes; b++) {
+            LOAD(rest[b], body->prony.rest + (PRONY_OFFSETS + e * dim + b) * body->point_count + q);
+        }
+        if (relaxes) {
+            lanes_apply(dim, false, v.F, rest, more);
+        }
+        for (int a = 0; a < dim; a++) {
+            force[a] += relaxes ? more[a] : (lanes){0.0};
+            STORE(at_edges[e * dim + a] + i, force[a]);
+            for (int b = 0; b < dim; b++) {
+                outer[a * dim + b] += v.offset[e][a] * v.along[e][b];
+                stress[a * dim + b] += relaxes ? v.offset[e][a] * rest[b] : (lanes){0.0};
+            }
+        }
+    }
+    lanes_product(dim, outer, v.Z, turned);
+    for (int k = 0; k < dim * dim; k++) {
+        LOAD(factor, P[k] + i);
+        factor += stress[k] + turned[k];
+        STORE(P[k] + i, factor);
     }
 }

@@ -189,11 +189,11 @@ double prony_energy(const struct body *body, int64_t q, double W, double W_v, do
 static double jump_work(const struct body *body, int64_t q)
 {
     const struct material *material = &body->materials[body->material[q]];
-    double F[9];
+    double F[9], volumetric;
     stress_gradient(body, q, F);
     double coupling = stress_coupling_energy(body, q, F, body->J[q]);
     double W = body->weight[q] * (material_isochoric_energy(material, F) + coupling);
-    W += body->smoothed ? stress_variance_energy(body, q) : 0.0;
+    W += body->smoothed ? stress_variance_energy(body, q, &volumetric) : 0.0;
     return (1.0 - step_of(material, INFINITY).factor) * W;
 }
 

@@ -2,10 +2,10 @@
  *
  * Convolved is, as X, what works along the objective strains E = (F^T F - I) / 2, J / det F, and F^T s_e of
  * the offsets s_e = m_e - (v_i + v_j) / 2 in a smoothed cell: the second Piola-Kirchhoff stress S of the
- * isochoric energy, of c in the coupling (11b) and of the variance (10), which is s . V s / 2; c g' of (11b);
- * and V F^-1 s_e (Simo 1987; Taylor et al. 2009). In a step of dt, each term goes from h to exp(-dt/tau) h +
- * g b (X - X_before), b = (1 - exp(-dt/tau)) tau / dt, which is exact where X is linear in time. So what acts
- * is a multiple of X plus a constant: it derives from an energy,
+ * isochoric energy, of c in the coupling (11b) and of the variance (10); c g' of (11b); and the derivatives
+ * of (10) by F^T s_e, all without bulk moduli (Simo 1987; Taylor et al. 2009). In a step of dt, each term
+ * goes from h to exp(-dt/tau) h + g b (X - X_before), b = (1 - exp(-dt/tau)) tau / dt, which is exact where X
+ * is linear in time. So what acts is a multiple of X plus a constant: it derives from an energy,
  *
  *   factor (W_iso + W_c + W_v) + rest_S : E + rest_J J / det F + sum_e s_e . F rest_e,
  *
@@ -63,9 +63,9 @@ void prony_prepare(struct body *body, bool all);
 void prony_stress(const struct body *body, int64_t q, const double F[9], double P[9], double *by_ratio);
 
 /* Of a viscoelastic point q: the stored energy, J (2D: J/m), where that of the law but for its volumetric
- * part is W, with W_v of the variance. A term of the last accepted state stores W |h|^2 / (g |X|^2), the norm
- * being that of W at small strain; which is g W before it relaxes, and 0 at last. *dissipated grows by the
- * work of the terms up to that state, less what they store. */
+ * part is W, with W_v of the variance, without its own. A term of the last accepted state stores W |h|^2 / (g
+ * |X|^2), the norm being that of W at small strain; which is g W before it relaxes, and 0 at last.
+ * *dissipated grows by the work of the terms up to that state, less what they store. */
 double prony_energy(const struct body *body, int64_t q, double W, double W_v, double *dissipated);
 
 /* Visit the histories, see base/state.h. */

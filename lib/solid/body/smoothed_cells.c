@@ -4,6 +4,7 @@
 #include "base/vector.h"
 #include "solid/body/body.h"
 #include "solid/body/nodal_offset.h"
+#include "solid/body/nodal_volume.h"
 
 #include <string.h>
 
@@ -55,14 +56,19 @@ static enum status set_face_gradients(struct body *body, struct error *error)
     return STATUS_OK;
 }
 
-/* The volume by which the variance of the gradient counts in each cell: its own, or in a cell that others are
- * merged with that of the group, and in those none. */
-static enum status set_variance_weights(struct body *body, struct error *error)
+/* The moduli of the variance in each cell: by its own volume, or in a cell that others are merged with by
+ * that of the group, and in those none. */
+static enum status set_variance_moduli(struct body *body, struct error *error)
 {
-    double **weight = &body->cells.variance_weight;
-    RETURN_IF_ERROR(NEW_ARRAY(weight, body->point_count + BODY_POINT_PADDING, error));
+    struct smoothed_cells *smoothed = &body->cells;
+    RETURN_IF_ERROR(NEW_ARRAY(&smoothed->variance_shear, body->point_count + BODY_POINT_PADDING, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&smoothed->variance_bulk, body->point_count + BODY_POINT_PADDING, error));
     for (int64_t q = 0; q < body->point_count; q++) {
-        (*weight)[smoothed_cells_group(body, q)] += body->weight[q];
+        int64_t cell = smoothed_cells_group(body, q);
+        double volume = VARIANCE_FACTOR(body->dim) * body->weight[q];
+        smoothed->variance_shear[cell] += volume * body->materials[body->material[cell]].shear_modulus;
+        smoothed->variance_bulk[cell] +=
+            volume * nodal_volume_modulus(&body->materials[body->material[cell]]);
     }
     return STATUS_OK;
 }
@@ -72,7 +78,7 @@ enum status smoothed_cells_build(const struct body_input *input, struct body *bo
     struct smoothed_cells *smoothed = &body->cells;
     int64_t entries = body->point_count * body->dim * body->dim + BODY_POINT_PADDING;
     RETURN_IF_ERROR(set_linear_gradients(&input->cells, body, error));
-    RETURN_IF_ERROR(set_variance_weights(body, error));
+    RETURN_IF_ERROR(set_variance_moduli(body, error));
     RETURN_IF_ERROR(NEW_ARRAY(&smoothed->interpolant, entries, error));
     RETURN_IF_ERROR(smoothed_rows_build(input, body, error));
     RETURN_IF_ERROR(nodal_offsets_build(input, body, error));
@@ -86,8 +92,9 @@ enum status smoothed_cells_build(const struct body_input *input, struct body *bo
 void smoothed_cells_free(struct smoothed_cells *smoothed)
 {
     field_averages_free(&smoothed->averages);
-    FREE_ALL(smoothed->interpolant, smoothed->offset_stiffness, smoothed->variance_weight,
-             smoothed->linear_gradient, smoothed->group, smoothed->group_end, smoothed->kept);
+    FREE_ALL(smoothed->interpolant, smoothed->offset_stiffness, smoothed->variance_shear,
+             smoothed->variance_bulk, smoothed->linear_gradient, smoothed->group, smoothed->group_end,
+             smoothed->kept);
     *smoothed = (struct smoothed_cells){0};
 }
 

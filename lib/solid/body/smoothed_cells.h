@@ -21,7 +21,7 @@
 #define EDGE_IN_FACE(dim) ((dim) == 2 ? 2.0 / 3.0 : 1.0 / 3.0)
 #define VERTEX_IN_FACE(dim) ((dim) == 2 ? 1.0 / 6.0 : 0.0)
 
-/* The energy within a cell by mu / 2 times the sum over k of |R_k - R|^2, per volume. */
+/* The energy (10) within a cell by the sum over its vertices, per volume. */
 #define VARIANCE_FACTOR(dim) (1.0 / (((dim) + 1) * ((dim) + 2)))
 
 /* In (11b): c by W_iso, and the square of the slope of g by its bound. */
@@ -31,10 +31,10 @@
 struct body;
 
 struct smoothed_cells {
-    struct field_averages averages; /* on the edges and at the vertices */
-    double *interpolant;            /* F_h at the last evaluation, as body->F */
-    double *variance_weight; /* point_count, padded as body->weight: volume by which the energy within a cell
-                                counts, m3 (2D: m2); */
+    struct field_averages averages;         /* on the edges and at the vertices */
+    double *interpolant;                    /* F_h at the last evaluation, as body->F */
+    double *variance_shear, *variance_bulk; /* point_count, padded as body->weight: moduli of the energy
+                                               within a cell, N m (2D: N) */
     double *linear_gradient; /* dim * dim rows of as many as there are cells, and BODY_POINT_PADDING more: row
                     (k - 1) dim
                     + b holds component b of the gradient of N_k, k = 1 .. dim, in each cell, 1/m; the

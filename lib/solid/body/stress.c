@@ -4,6 +4,7 @@
 #include "base/vector.h"
 #include "solid/material/ellipticity.h"
 #include "solid/material/law.h"
+#include "solid/material/tensor.h"
 
 #include <math.h>
 #include <string.h>
@@ -170,14 +171,27 @@ void stress_points(const struct body *body, const struct block *block, block_row
     }
 }
 
-/* |R_k - R|^2, summed over the vertices and components of cell q. */
-static double squares_of_variation(const struct body *body, int64_t q)
+void stress_limit_stretch(const double F[9], double Z[9])
+{
+    double sum[9], cofactors[9];
+    for (int k = 0; k < 9; k++) {
+        sum[k] = (k % 4 == 0 ? 3.0 : 0.0) + F[k / 3] * F[k % 3] + F[3 + k / 3] * F[3 + k % 3] +
+                 F[6 + k / 3] * F[6 + k % 3];
+    }
+    cofactor(sum, cofactors);
+    for (int k = 0; k < 9; k++) {
+        Z[k] = 4.0 * cofactors[k] / determinant(sum);
+    }
+}
+
+double stress_variance_energy(const struct body *body, int64_t q, double *volumetric)
 {
     const struct field_averages *averages = &body->cells.averages;
     int dim = body->dim, edges = CELL_EDGES(dim);
     const int32_t *of_edge = averages->of_use + q * edges;
     const int32_t *of_vertex = averages->of_use + field_averages_vertices(averages, dim) + q * (dim + 1);
-    double grad_N[12], edge[6], vertex[4], variation[12], sum = 0.0;
+    double F[9], Z[9], grad_N[12], edge[6], vertex[4], variation[3][12], squares = 0.0, traces = 0.0;
+    stress_gradient(body, q, F);
     smoothed_cells_linear_gradients(body, q, grad_N);
     for (int a = 0; a < dim; a++) {
         for (int e = 0; e < edges; e++) {
@@ -186,21 +200,25 @@ static double squares_of_variation(const struct body *body, int64_t q)
         for (int k = 0; k <= dim; k++) {
             vertex[k] = averages->value[of_vertex[k] + a];
         }
-        smoothed_cells_variation(dim, grad_N, edge, vertex, variation);
-        for (int k = 0; k <= dim; k++) {
-            sum += vector_dot(dim, variation + k * dim, variation + k * dim);
-        }
+        smoothed_cells_variation(dim, grad_N, edge, vertex, variation[a]);
     }
-    return sum;
-}
-
-double stress_variance_energy(const struct body *body, int64_t point)
-{
-    double shear = body->materials[body->material[point]].shear_modulus;
-    double weight = body->cells.variance_weight[point];
-    return weight > 0.0
-               ? 0.5 * weight * VARIANCE_FACTOR(body->dim) * shear * squares_of_variation(body, point)
-               : 0.0;
+    stress_limit_stretch(F, Z);
+    for (int k = 0; k <= dim; k++) {
+        double D[9] = {0.0}, half[9], M[9];
+        for (int b = 0; b < dim * dim; b++) {
+            for (int a = 0; a < dim; a++) {
+                D[3 * (b / dim) + b % dim] += F[3 * a + b / dim] * variation[a][k * dim + b % dim];
+            }
+        }
+        multiply(Z, D, half);
+        multiply(half, Z, M);
+        for (int a = 0; a < 9; a++) {
+            squares += M[a] * (M[a] + M[3 * (a % 3) + a / 3]);
+        }
+        traces += (M[0] + M[4] + M[8]) * (M[0] + M[4] + M[8]);
+    }
+    *volumetric = 0.5 * body->cells.variance_bulk[q] * traces;
+    return 0.5 * body->cells.variance_shear[q] * (squares - 2.0 / 3.0 * traces);
 }
 
 /* along = the derivative of cof H : D by H. */

@@ -22,5 +22,9 @@ double stress_active_energy(const struct body *body, int64_t point, const double
 /* Energy (11b) of a cell of volume ratio J, per volume, Pa; 0 at points without cells. */
 double stress_coupling_energy(const struct body *body, int64_t point, const double F[9], double J);
 
-/* Energy of the variance of a cell's gradient at the last evaluation, J (2D: J/m): see smoothed_cells.h. */
-double stress_variance_energy(const struct body *body, int64_t point);
+/* Z = 4 (3 + F^T F)^-1 of (10). */
+void stress_limit_stretch(const double F[9], double Z[9]);
+
+/* Energy (10) of what varies within a cell at the last evaluation, J (2D: J/m); *volumetric: that of s, which
+ * is not in it. */
+double stress_variance_energy(const struct body *body, int64_t point, double *volumetric);

@@ -82,7 +82,20 @@ static void add_cells(const struct stiffness_rows *rows, int32_t f, struct stiff
     }
 }
 
-/* Forces of the variance of the gradient in a cell, the same in each direction. */
+/* Of moves in each direction, whose gradient at a vertex varies by v: the stress along g. */
+KERNEL_INLINE void add_stresses(int dim, const struct stiffness_cell *cell, const double *v, const double *g,
+                                four force[3])
+{
+    four along_v = {v[0], v[1], dim == 3 ? v[2] : 0.0, 0.0},
+         along_g = {g[0], g[1], dim == 3 ? g[2] : 0.0, 0.0};
+    double common = cell->variance_shear * vector_dot(dim, v, g);
+    for (int a = 0; a < dim; a++) {
+        force[a] += cell->variance_shear * g[a] * along_v + cell->variance_lame * v[a] * along_g;
+        force[a][a] += common;
+    }
+}
+
+/* Forces of the variance of the gradient in a cell. */
 KERNEL_INLINE void add_variance(int dim, const struct stiffness_cell *cell, struct stiffness_row *row)
 {
     double edge[6], vertex[4], variation[12];
@@ -96,14 +109,15 @@ KERNEL_INLINE void add_variance(int dim, const struct stiffness_cell *cell, stru
     smoothed_cells_variation(dim, grad_N, edge, vertex, variation);
     for (int e = 0; e < CELL_EDGES(dim); e++) {
         int k = cell_edge_ends[e][0], l = cell_edge_ends[e][1];
-        double force = cell->variance * (vector_dot(dim, variation + k * dim, grad_N + l * dim) +
-                                         vector_dot(dim, variation + l * dim, grad_N + k * dim));
+        four force[3] = {{0.0}};
+        add_stresses(dim, cell, variation + k * dim, grad_N + l * dim, force);
+        add_stresses(dim, cell, variation + l * dim, grad_N + k * dim, force);
         double *at[3] = {on_field(row, cell->field[e]), on_field(row, cell->vertex[k]),
                          on_field(row, cell->vertex[l])};
-        for (int i = 0; i < dim; i++) {
-            at[0][i * 5] += force;
-            at[1][i * 5] -= 0.5 * force;
-            at[2][i * 5] -= 0.5 * force;
+        for (int a = 0; a < dim; a++) {
+            *(four *)(at[0] + 4 * a) += force[a];
+            *(four *)(at[1] + 4 * a) -= 0.5 * force[a];
+            *(four *)(at[2] + 4 * a) -= 0.5 * force[a];
         }
     }
 }

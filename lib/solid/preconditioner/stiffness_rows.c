@@ -28,7 +28,9 @@ static void set_cell(const struct body *body, int64_t q, struct stiffness_cell *
     cell->share = smoothed_cells_share(body, q);
     cell->shear = body->weight[q] * shear;
     cell->first_lame = body->weight[q] * (bulk - 2.0 / 3.0 * shear);
-    cell->variance = EDGE_OFFSET * VARIANCE_FACTOR(body->dim) * body->cells.variance_weight[q] * shear;
+    cell->variance_shear = EDGE_OFFSET * body->cells.variance_shear[q];
+    cell->variance_lame =
+        EDGE_OFFSET * (body->cells.variance_bulk[q] - 2.0 / 3.0 * body->cells.variance_shear[q]);
     cell->count = smoothed_cells_rows(body, q, cell->field, cell->gradient);
     smoothed_cells_linear_gradients(body, q, cell->linear_gradient);
     for (int k = 0; k <= body->dim; k++) {

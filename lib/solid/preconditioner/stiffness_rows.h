@@ -18,7 +18,7 @@ struct stiffness_cell {
     int32_t first, end;                                  /* its group (merged_cells.h) */
     int32_t count, field[SMOOTHED_MOST_ROWS], vertex[4]; /* fields: edges first; those at the vertices */
     double share, shear, first_lame;         /* of the group: its part; moduli times volume, N m (2D: N) */
-    double variance;                         /* modulus of the variance, likewise */
+    double variance_shear, variance_lame;    /* moduli of the variance, likewise */
     double gradient[SMOOTHED_MOST_ROWS * 3]; /* by the fields, */
     double linear_gradient[12];              /* and of the linear shape functions, 1/m */
 };
