@@ -181,6 +181,11 @@ END
     support -t gauss.txt > lists.txt
     edit nbr.idx 7 1000 lists.txt > bad.txt
     hostile 2 shapefn bad.txt "nbr.idx: row 7: no row 1000 of nodes.x"
+    cloud -d 2 -k regular -n 11,3 --box 0,1,0,0.01 2> note | support -t > flat.txt 2> note
+    edit support.stretch 7 "0 0 0 0" flat.txt > bad.txt
+    hostile 2 shapefn bad.txt "support.stretch: row 7: not a symmetric matrix without eigenvalues below 1"
+    mts drop support.stretch flat.txt > bad.txt
+    hostile 2 shapefn bad.txt "no section support.stretch: run support"
     edit points.x 2 "nan 0" lists.txt > bad.txt
     hostile 2 shapefn bad.txt "points.x: row 2"
 }

@@ -17,9 +17,9 @@ enum status stage_radii(const struct stream *stream, const struct support_option
     *stretch = NULL;
     NEW_SCRATCH(double, spacing, node_count, error);
     RETURN_IF_ERROR(stream_cells(stream, false, &cells, error));
-    if (!(options->radius > 0.0)) { /* the local spacing: of the cells if there are any, else of the nodes */
+    if (options->radius <= 0.0) { /* the local spacing */
         RETURN_IF_ERROR(cells.count > 0 ? support_stretch(&cells, stretch, error) : STATUS_OK);
-        RETURN_IF_ERROR(cells.count > 0 ? cells_node_spacing(&cells, *stretch, spacing, error)
+        RETURN_IF_ERROR(cells.count > 0 ? support_spacing(&cells, *stretch, spacing, error)
                                         : nodes_spacing(options->mls.dim, node_count, x, spacing, error));
     }
     return support_radii(options, node_count, spacing, radius, error);
@@ -91,12 +91,12 @@ static enum status stage_lists(struct stream *stream, const struct support_optio
     *report = (struct support_report){.visibility = options->visibility};
     RETURN_IF_ERROR(stream_cells(stream, false, &cells, error));
     RETURN_IF_ERROR(stream_view(stream, "points.x", &points, error));
-    if (options->side != NULL) {
-        RETURN_IF_ERROR(
-            stream_put_copy(stream, "support.side", TYPE_I4, cells.count, 1, "", options->side, error));
-    }
+    const int32_t *side = options->side;
+    RETURN_IF_ERROR(side == NULL
+                        ? STATUS_OK
+                        : stream_put_copy(stream, "support.side", TYPE_I4, cells.count, 1, "", side, error));
     RETURN_IF_ERROR(stream_supports(stream, "support", &supports, error));
-    RETURN_IF_ERROR(visibility_build(&cells, supports, options->visibility, options->side, &space, error));
+    RETURN_IF_ERROR(visibility_build(&cells, supports, options->visibility, side, &space, error));
     bool smoothed = points_are_smoothed(points);                   /* gradients come from the faces alone */
     if (!smoothed && stream_find(stream, "points.cell") != NULL) { /* else cells are searched for */
         RETURN_IF_ERROR(stream_view(stream, "points.cell", &cell, error));
@@ -138,8 +138,7 @@ enum status stage_support(struct stream *stream, const struct support_options *o
 
 /* ---- sides of the interfaces at which supports stop ---- */
 
-/* place[regions->count] = the place of each region in the list, from 1; 0: not in it. *named: their number.
- */
+/* place[regions->count] = the place of each region in the list, from 1, or 0; *named: their number. */
 static enum status read_list(const char *names, const struct names *regions, int32_t *place, int32_t *named,
                              struct error *error)
 {
@@ -206,15 +205,12 @@ enum status stage_renew(struct stream *stream, const int32_t *side, struct error
     struct cells cells;
     RETURN_IF_ERROR(stream_cells(stream, true, &cells, error));
     RETURN_IF_ERROR(stage_recorded(stream, "support", &recorded, error));
-    int64_t entries = recorded.supports.stretch != NULL ? cells.node_count * cells.dim * cells.dim : 0;
-    NEW_SCRATCH(double, radius, cells.node_count, error);
-    NEW_SCRATCH(double, stretch, entries, error);
-    memcpy(radius, recorded.supports.radius, (size_t)cells.node_count * sizeof *radius);
-    recorded.supports.radius = radius;
-    if (entries > 0) {
-        memcpy(stretch, recorded.supports.stretch, (size_t)entries * sizeof *stretch);
-        recorded.supports.stretch = stretch;
+    int64_t count = cells.node_count, size = recorded.supports.stretch != NULL ? cells.dim * cells.dim : 0;
+    NEW_SCRATCH(double, kept, count * (1 + size), error);
+    for (int64_t i = 0; i < count * (1 + size); i++) {
+        kept[i] = i < count ? recorded.supports.radius[i] : recorded.supports.stretch[i - count];
     }
+    recorded.supports = (struct supports){kept, size > 0 ? kept + count : NULL};
     recorded.support.side = side;
     sections_remove(stream, MADE_WITH_SUPPORT, MADE_WITH_SHAPES);
     RETURN_IF_ERROR(stage_face_points(stream, error));
@@ -299,8 +295,8 @@ static void describe(const struct field_shapes *recorded, char text[DESCRIPTION]
         snprintf(lists, sizeof lists, " least=%jd most=%jd widen=%d bound=%.17g", options->least,
                  options->most, options->widen, options->gradient_bound);
     }
-    snprintf(text, DESCRIPTION, "unit=m reach=%s %s%s%s", visibility_names[options->visibility], mls, lists,
-             same ? "" : shapes);
+    snprintf(text, DESCRIPTION, "unit=m reach=%s%s %s%s%s", visibility_names[options->visibility],
+             recorded->supports.stretch != NULL ? " stretch=yes" : "", mls, lists, same ? "" : shapes);
 }
 
 /* The settings of shape functions, from attributes with this prefix. */
@@ -368,14 +364,13 @@ enum status stage_record(struct stream *stream, const struct field_shapes *recor
                          struct error *error)
 {
     char described[DESCRIPTION];
-    int64_t dim = recorded->support.mls.dim;
     describe(recorded, described);
     RETURN_IF_ERROR(stream_put_copy(stream, "support.radius", TYPE_F8, node_count, 1, described,
                                     recorded->supports.radius, error));
-    return recorded->supports.stretch == NULL
-               ? STATUS_OK
-               : stream_put_copy(stream, "support.stretch", TYPE_F8, node_count, dim * dim, "",
-                                 recorded->supports.stretch, error);
+    const double *A = recorded->supports.stretch;
+    int64_t cols = recorded->support.mls.dim == 2 ? 4 : 9;
+    return A == NULL ? STATUS_OK
+                     : stream_put_copy(stream, "support.stretch", TYPE_F8, node_count, cols, "", A, error);
 }
 
 /* ---- the field that mtled computed ---- */

@@ -1,7 +1,9 @@
 #include "stages/views.h"
 
 #include "approx/cells/face_edges.h"
+#include "base/eigen.h"
 #include "base/memory.h"
+#include "base/round_off.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -29,10 +31,11 @@ static enum status check_shape(const struct stream *stream, const struct section
                                const struct section_kind *kind, struct error *error)
 {
     int dim = find_dimension(stream);
-    int64_t cols = kind->cols == COLS_DIM          ? dim
-                   : kind->cols == COLS_DIM_PLUS_1 ? dim + 1
-                   : kind->cols == COLS_ANY        ? section->cols
-                                                   : kind->cols;
+    int64_t cols = kind->cols == COLS_DIM           ? dim
+                   : kind->cols == COLS_DIM_PLUS_1  ? dim + 1
+                   : kind->cols == COLS_DIM_SQUARED ? dim * dim
+                   : kind->cols == COLS_ANY         ? section->cols
+                                                    : kind->cols;
     const struct section *other = kind->rows_of != NULL ? stream_find(stream, kind->rows_of) : NULL;
     int64_t rows = other != NULL ? other->rows + (kind->content == LIST) : section->rows;
     if (section->type != kind->type) {
@@ -69,6 +72,28 @@ enum status section_check_numbers(const struct section *section, enum content co
     return STATUS_OK;
 }
 
+static enum status check_stretch(const struct section *section, struct error *error)
+{
+    const double *A = section->data;
+    int dim = section->cols == 4 ? 2 : 3;
+    RETURN_IF_ERROR(section_check_numbers(section, FINITE, error));
+    for (int64_t row = 0; row < section->rows; row++, A += dim * dim) {
+        double value[3], V[9], least = INFINITY, most = 0.0, off = 0.0;
+        eigen_symmetric(dim, A, value, V);
+        for (int k = 0; k < dim * dim; k++) {
+            off = fmax(off, fabs(A[k] - A[k % dim * dim + k / dim]));
+            least = fmin(least, value[k % dim]);
+            most = fmax(most, value[k % dim]);
+        }
+        if (!(least >= 1.0 - COARSE_ROUND_OFF && off <= COARSE_ROUND_OFF * most)) {
+            return fail(error, STATUS_INPUT,
+                        "%s: row %jd: not a symmetric matrix without eigenvalues below 1", section->name,
+                        row);
+        }
+    }
+    return STATUS_OK;
+}
+
 enum status section_check_indices(const struct section *section, int64_t least, int64_t bound,
                                   const char *what, const char *why, struct error *error)
 {
@@ -92,6 +117,9 @@ enum status section_check(const struct stream *stream, const struct section *sec
         snprintf(of, sizeof of, " of %s", kind->index_of);
         return section_check_indices(section, kind->content == INDEX_OR_NONE ? -1 : 0,
                                      other != NULL ? other->rows : INT32_MAX, "row", of, error);
+    }
+    if (kind->content == STRETCH) {
+        return check_stretch(section, error);
     }
     return (kind->content >= FINITE && kind->content <= AT_LEAST_ONE) || kind->content == UNITY
                ? section_check_numbers(section, kind->content, error)
@@ -326,15 +354,12 @@ enum status stream_supports(const struct stream *stream, const char *prefix, str
                             struct error *error)
 {
     const struct section *radius, *stretch;
-    int dim = 0;
-    RETURN_IF_ERROR(stream_nodes(stream, &dim, NULL, NULL, error));
+    char value[16];
     RETURN_IF_ERROR(view_member(stream, prefix, "radius", true, &radius, error));
-    RETURN_IF_ERROR(view_member(stream, prefix, "stretch", false, &stretch, error));
+    bool needed = section_attribute(radius, "stretch", value, sizeof value);
+    RETURN_IF_ERROR(view_member(stream, prefix, "stretch", needed, &stretch, error));
     *supports = (struct supports){radius->data, stretch != NULL ? stretch->data : NULL};
-    return stretch == NULL || stretch->cols == dim * dim
-               ? STATUS_OK
-               : fail(error, STATUS_INPUT, "%s: %jd columns, not %d", stretch->name, stretch->cols,
-                      dim * dim);
+    return STATUS_OK;
 }
 
 enum status stream_put_copy(struct stream *stream, const char *name, enum element_type type, int64_t rows,

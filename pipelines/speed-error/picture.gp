@@ -22,7 +22,7 @@ set grid
 set multiplot layout lines, columns
 do for [body in cases] {
     set title body noenhanced
-    if (body eq word(cases, words(cases))) { set key left bottom Left reverse samplen 1 }
+    if (body eq word(cases, words(cases))) { set key left top Left reverse samplen 1 }
     plot for [s in there] data \
         using (strcol(1) eq body && strcol(2) eq s ? $7 : NaN):8 with linespoints pt 7 ps 0.9 lw 2 lc rgb colour(s) title name(s)
 }

@@ -240,7 +240,8 @@ TEST_IN_EACH_DIM(relaxation)
         body[i] = make_body(&sample, &setup[i]);
         /* What stays elastic, by the long-term and the first mu. */
         memset(body[i].cells.offset_stiffness, 0, (size_t)sample.cloud.node_count * sizeof *u);
-        memcpy(body[i].cells.variance_bulk, body[i == 1 ? 0 : i].cells.variance_bulk, (size_t)body->point_count * sizeof *u);
+        memcpy(body[i].cells.variance_bulk, body[i == 1 ? 0 : i].cells.variance_bulk,
+               (size_t)body->point_count * sizeof *u);
         force[i] = zeros(count, sizeof *u);
         (void)body_force(&body[i], u, force[i]);
         energy[i] = body_energy(&body[i], u);

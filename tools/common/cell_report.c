@@ -73,8 +73,8 @@ enum status cell_report_hanging(const struct cells *cells, int64_t named_count, 
                              found.touching.count);
 }
 
-/* More of the volume than this is noted: a cube of two cells along each edge is not. */
-static const double noted_share = 0.6;
+/* More of the boundary than this is noted. */
+static const double noted_share = 0.5;
 
 void tool_note_thin(const struct tool *tool, const struct cells *cells)
 {
@@ -82,7 +82,8 @@ void tool_note_thin(const struct tool *tool, const struct cells *cells)
     TOOL_TRY(tool, cells_find_thin(cells, &thin, &error));
     if (thin.share > noted_share) {
         tool_note(tool,
-                  "%.0f %% of the volume is one cell thick, as at %s m: it bends too stiffly, by up to a "
+                  "%.0f %% of the boundary is on parts one cell thick, as at %s m: they bend too stiffly, by "
+                  "up to a "
                   "half, or more where the cells are flat: two cells over the thickness bend well",
                   100.0 * thin.share, POINT_TEXT(cells->dim, thin.place));
     }

@@ -72,7 +72,8 @@ MUST_CHECK enum status faces_mark(const struct faces *faces, int64_t count, cons
  * faces_build. */
 MUST_CHECK enum status cells_across(const struct cells *cells, int32_t *across, struct error *error);
 
-/* spacing[node_count]: mean length of the cell edges at each node; 0 at nodes of no cell. */
+/* spacing[node_count]: mean length of the cell edges at each node; 0 at nodes of no cell. stretch[]: A of
+ * each node, dim * dim, in lengths |A edge|; NULL: 1. */
 MUST_CHECK enum status cells_node_spacing(const struct cells *cells, const double *stretch, double *spacing,
                                           struct error *error);
 

@@ -49,29 +49,33 @@ double cell_quality(const struct cells *cells, int64_t cell, double angles[2])
 enum status cells_find_thin(const struct cells *cells, struct thin_report *report, struct error *error)
 {
     int dim = cells->dim, corners = dim + 1;
-    double whole = 0.0, thin = 0.0, largest = 0.0;
+    double whole = 0.0, thin = 0.0, largest = 0.0, area[3];
+    int32_t node[3];
     *report = (struct thin_report){0};
     NEW_SCRATCH(int32_t, across, cells->count * corners, error);
-    NEW_SCRATCH(bool, outside, cells->node_count, error);
+    NEW_SCRATCH(double, normal, cells->node_count * dim, error); /* outward: of the facets at each node */
     RETURN_IF_ERROR(cells_across(cells, across, error));
     for (int64_t i = 0; i < cells->count * corners; i++) {
-        int32_t node[3];
         cell_face(cells, i / corners, (int)(i % corners), node);
+        face_area_vector(dim, cells->x, node, area);
         for (int k = 0; k < dim && across[i] < 0; k++) {
-            outside[node[k]] = true;
+            add_scaled(dim, 1.0, area, normal + (int64_t)node[k] * dim);
         }
     }
-    for (int64_t c = 0; c < cells->count; c++) {
-        double volume = cell_volume(cells, c);
-        bool all = true;
-        for (int k = 0; k < corners; k++) {
-            all = all && outside[cells->node[c * corners + k]];
+    for (int64_t i = 0; i < cells->count * corners; i++) {
+        if (across[i] >= 0) {
+            continue;
         }
-        whole += volume;
-        thin += all ? volume : 0.0;
-        if (all && volume > largest) {
-            largest = volume;
-            cell_centroid(cells, c, report->place);
+        const double *opposite = normal + (int64_t)cells->node[i] * dim;
+        cell_face(cells, i / corners, (int)(i % corners), node);
+        face_area_vector(dim, cells->x, node, area);
+        double size = vector_length(dim, area);
+        bool faces = vector_dot(dim, opposite, area) < -SAME_DIRECTION * size * vector_length(dim, opposite);
+        whole += size;
+        thin += faces ? size : 0.0;
+        if (faces && size > largest) {
+            largest = size;
+            vector_middle(dim, cells->x, dim, node, report->place);
         }
     }
     report->share = whole > 0.0 ? thin / whole : 0.0;

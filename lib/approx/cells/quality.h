@@ -14,10 +14,10 @@ double cell_quality(const struct cells *cells, int64_t cell, double angles[2]);
  * (solid/body/merged_cells.h). */
 #define POOR_QUALITY 1e-2
 
-/* Parts that are one cell thick: the cells all of whose nodes lie on the boundary. In bending, three nodes
- * lie across two cells, and the fields at their edges make a parabola; across one cell they do not. */
+/* Parts that are one cell thick: the facets of the boundary whose cell has its other corner on the boundary,
+ * too, where that faces the other way. */
 struct thin_report {
-    double share;    /* of these cells in the volume */
+    double share;    /* of these facets in the boundary, by area or length */
     double place[3]; /* the middle of the largest, m */
 };
 

@@ -209,17 +209,19 @@ enum status point_grid_query_box(const struct point_grid *grid, const double *lo
     return STATUS_OK;
 }
 
-/* Whether x is in the support of a node, by the ellipsoid. */
-static bool is_within(const struct point_grid *grid, const double *x, int64_t node, double factor)
+double point_grid_distance2(const struct point_grid *grid, const double *x, int64_t node)
 {
     int dim = grid->dim;
-    double difference[3], square = 0.0, radius = factor * grid->radius[node];
+    double difference[3], square = 0.0;
     vector_subtract(dim, x, grid->x + node * dim, difference);
+    if (grid->stretch == NULL) {
+        return vector_dot(dim, difference, difference);
+    }
     for (int a = 0; a < dim; a++) {
         double along = vector_dot(dim, grid->stretch + (node * dim + a) * dim, difference);
         square += along * along;
     }
-    return square < radius * radius;
+    return square;
 }
 
 enum status point_grid_query(const struct point_grid *grid, const double *x, double factor,
@@ -229,8 +231,9 @@ enum status point_grid_query(const struct point_grid *grid, const double *x, dou
     RETURN_IF_ERROR(point_grid_query_box(grid, x, x, factor, list, error));
     if (grid->stretch != NULL) {
         for (int64_t i = kept; i < list->count; i++) {
+            double radius = factor * grid->radius[list->index[i]];
             list->index[kept] = list->index[i];
-            kept += is_within(grid, x, list->index[i], factor);
+            kept += point_grid_distance2(grid, x, list->index[i]) < radius * radius;
         }
         list->count = kept;
     }

@@ -43,6 +43,9 @@ MUST_CHECK enum status point_grid_build(struct point_grid *grid, int dim, int64_
                                         const double *radius, struct error *error);
 void point_grid_free(struct point_grid *grid);
 
+/* The square of |A (x - x_j)| of a node j. */
+double point_grid_distance2(const struct point_grid *grid, const double *x, int64_t node);
+
 /* A growing list of node indices. */
 struct index_list {
     int32_t *index;

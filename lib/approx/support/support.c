@@ -50,8 +50,7 @@ static enum status keep_nearest(const struct point_grid *grid, const double *x, 
     }
     RETURN_IF_ERROR(GROW_ARRAY(&worker->order, *count, &worker->order_room, error));
     for (int64_t i = 0; i < *count; i++) {
-        const double *y = grid->x + (int64_t)index[i] * grid->dim;
-        worker->order[i] = (struct placed){vector_distance2(grid->dim, x, y), index[i]};
+        worker->order[i] = (struct placed){point_grid_distance2(grid, x, index[i]), index[i]};
     }
     qsort(worker->order, (size_t)*count, sizeof *worker->order, compare_placed);
     for (int64_t i = 0; i < most; i++) {
@@ -70,7 +69,7 @@ static double spacing_within(const struct support_options *options, const struct
     double farthest = 0.0;
     if (count == options->most) {
         for (int64_t i = 0; i < count; i++) {
-            double distance2 = vector_distance2(grid->dim, x, grid->x + (int64_t)index[i] * grid->dim);
+            double distance2 = point_grid_distance2(grid, x, index[i]);
             farthest = distance2 > farthest ? distance2 : farthest;
         }
         farthest = sqrt(farthest);

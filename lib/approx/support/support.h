@@ -44,12 +44,18 @@ struct neighbours {
 MUST_CHECK enum status nodes_spacing(int dim, int64_t node_count, const double *x, double *spacing,
                                      struct error *error);
 
-/* (*stretch)[node_count * dim * dim], to be freed: A of each node's support (point_grid.h), so that supports
- * are as long as the cells around the node where these are flat: with the mean T of x (x) x over their edges,
- * whose roots l_1 >= l_2, .. of eigenvalues are lengths along the eigenvectors, A has the eigenvalues
- * max(1, l_1 / (dim l_i)). A lattice of cubes that are cut along one diagonal has l_1 / l_i = 2, in 2D 1.73.
- * NULL where all A are 1. */
+/* (*stretch)[node_count * dim * dim], to be freed: A of each node's support (point_grid.h). Supports are
+ * longer where the cells around the node are: T is the mean of x (x) x over the edges of these cells, with
+ * eigenvalues t_1 >= t_i. A has the eigenvectors of T, and the squares of its eigenvalues are max(1, t_1 /
+ * t_i - 3 dim + 1), at most those of supports that are 32 times as long as wide. Of a lattice of cubes that
+ * are cut along one diagonal t_1 / t_i is 4, in 2D 3. NULL where all A are 1. */
 MUST_CHECK enum status support_stretch(const struct cells *cells, double **stretch, struct error *error);
+
+/* spacing[node_count], m, by which the radii of these supports are set: that of the cells in lengths |A
+ * edge|, and a little more where A is not 1. A flat lattice becomes one of equilateral triangles, whose
+ * second neighbours, at 3^(1/2) spacings, must not be just outside of supports of 1.8. */
+MUST_CHECK enum status support_spacing(const struct cells *cells, const double *stretch, double *spacing,
+                                       struct error *error);
 
 /* radius[node_count], m, from the options and the local spacing. */
 MUST_CHECK enum status support_radii(const struct support_options *options, int64_t node_count,

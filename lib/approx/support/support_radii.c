@@ -56,6 +56,12 @@ static void sum_edges(const struct cells *cells, double *T)
     }
 }
 
+/* Supports are at most so many times as long as wide: beyond, MMLS is linear across them, as mu = 1e-7
+ * exceeds the fourth power of the relative width. */
+static const double most_stretch = 32.0;
+/* Of the spacing, at most, by which supports are wider there. */
+static const double stretched_more = 0.15;
+
 /* From T of a node its A, in place; whether it is not 1. */
 static bool set_stretch(int dim, double *A)
 {
@@ -69,7 +75,8 @@ static bool set_stretch(int dim, double *A)
         A[k] = k / dim == k % dim ? 1.0 : 0.0;
     }
     for (int i = 0; i < dim; i++) {
-        double more = sqrt(longest / fmax(value[i], 1e-12 * longest)) - dim;
+        double square = longest / fmax(value[i], longest / (most_stretch * most_stretch)) - 3 * dim + 1;
+        double more = sqrt(fmax(square, 1.0)) - 1.0;
         for (int k = 0; k < dim * dim && more > COARSE_ROUND_OFF; k++) {
             A[k] += more * V[k / dim * dim + i] * V[k % dim * dim + i];
         }
@@ -91,6 +98,21 @@ enum status support_stretch(const struct cells *cells, double **stretch, struct 
     if (!any) {
         FREE_ALL(*stretch);
         *stretch = NULL;
+    }
+    return STATUS_OK;
+}
+
+enum status support_spacing(const struct cells *cells, const double *stretch, double *spacing,
+                            struct error *error)
+{
+    int dim = cells->dim;
+    RETURN_IF_ERROR(cells_node_spacing(cells, stretch, spacing, error));
+    for (int64_t n = 0; n < cells->node_count && stretch != NULL; n++) {
+        double trace = 0.0;
+        for (int a = 0; a < dim; a++) {
+            trace += stretch[(n * dim + a) * dim + a];
+        }
+        spacing[n] *= 1.0 + stretched_more * (1.0 - dim / trace);
     }
     return STATUS_OK;
 }

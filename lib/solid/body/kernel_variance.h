@@ -52,7 +52,6 @@ KERNEL_INLINE void load_factors(const struct body *body, int64_t q, lanes *facto
     }
 }
 
-#include <stdlib.h>
 /* The s_e of each component in the cells at i. */
 KERNEL_INLINE void load_offsets(const block_edges edges, const block_vertices vertices, int64_t i, int dim,
                                 lanes offset[6][3])

@@ -21,7 +21,7 @@
 enum { MERGED_MOST_CELLS = 16, GROUP_MOST_CELLS = 32 };
 
 /* k of cells at a junction. */
-#define JUNCTION_KEPT 0.75
+#define JUNCTION_KEPT 0.7
 
 /* Find the groups, reorder the body's points so that the members of each are consecutive, and list them. */
 MUST_CHECK enum status merged_cells_build(const struct body_input *input, struct body *body,
