@@ -133,7 +133,8 @@ closed_cube() {
 }
 
 # Forces of mixed elements (quadratic displacement, linear pressure, by pipelines/mixed/solve.sh) on these tetrahedra, with nodes
-# at their corners and amid their edges: ours has an eighth of the nodes.
+# at their corners and amid their edges: ours has an eighth of the nodes. Coarse cells are too stiff beside small patches: 5.0 and 10.8 % with (10)
+# by gradients, 5.6 and 11.7 % by strains.
 @test "patches round an end, a corner, a girdle, a single facet: forces of mixed elements, no stall" {
     cloud -d 3 -k jittered -n 11,5,5 --box 0,1,0,0.4,0,0.4 --jitter 0.1 --seed 4 > box.mts
     { head3; printf '[displacement held]\nfacets = held\ncomponents = 0, 0, 0\n[displacement moved]\nfacets = moved\ncomponents = 0.01, 0, 0\n'; } > patch.scene
@@ -145,7 +146,7 @@ closed_cube() {
     done << 'END'
 x < 0.12/x > 0.88/6.4475/0.03
 x < 0.12/x > 0.75 && y > 0.25 && z > 0.25/4.2134/0.06
-x < 1e-9/(x - 0.56)^2 + (y - 0.13)^2 + (z - 0.4)^2 < 0.002/2.0224/0.13
+x < 1e-9/(x - 0.56)^2 + (y - 0.13)^2 + (z - 0.4)^2 < 0.002/2.0224/0.12
 x < 1e-9/x > 0.6 && x < 0.8 && (y > 0.399 || y < 1e-9 || z > 0.399 || z < 1e-9)/8.3653/0.03
 END
 }
@@ -236,7 +237,8 @@ END
 }
 
 # A slab in plane strain between plates .1 m apart that hold its ends, pressed by 10 %: the force of mixed elements in 2D is 58.1 N/m at
-# nu = .49. At .3, where nothing is limited, the force on fine triangles is 38.30 N/m.
+# nu = .49. At .3, where nothing is limited, the force on fine triangles is 38.30 N/m. With (10) by gradients
+# this mesh was 2.0 % too stiff at .49, by strains 2.7 %.
 @test "edges between clamped and free sides: coarse tetrahedra give the force of plane strain" {
     cat > slab.geo << 'END'
 SetFactory("OpenCASCADE"); Box(1) = {-0.05, -0.05, 0, 0.1, 0.1, 0.04}; Physical Volume("body") = {1};

@@ -52,6 +52,20 @@ static inline double vector_length(int dim, const double *a)
     return sqrt(vector_dot(dim, a, a));
 }
 
+/* |A v|^2 with A[dim * dim], by rows; NULL: |v|^2. */
+static inline double vector_square(int dim, const double *A, const double *v)
+{
+    double square = 0.0;
+    if (A == NULL) {
+        return vector_dot(dim, v, v);
+    }
+    for (int a = 0; a < dim; a++) {
+        double along = vector_dot(dim, A + a * dim, v);
+        square += along * along;
+    }
+    return square;
+}
+
 static inline double vector_distance(int dim, const double *a, const double *b)
 {
     return sqrt(vector_distance2(dim, a, b));

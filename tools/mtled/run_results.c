@@ -38,22 +38,19 @@ void run_put_field(const struct run *run, const struct instant *instant, const d
 
 void run_put_supports(const struct run *run)
 {
+    static const char *const names[] = {"radius", "stretch", "side"};
     const struct section *radius = stream_find(run->stream, "support.radius"),
-                         *nodes = stream_find(run->stream, "nodes.x"),
-                         *stretch = stream_find(run->stream, "support.stretch"),
-                         *side = stream_find(run->stream, "support.side");
-    if (radius == NULL || nodes == NULL || radius->rows != nodes->rows) {
-        return;
-    }
-    TOOL_TRY(run->tool, stream_put_copy(run->stream, "parameters.radius", TYPE_F8, radius->rows, 1,
-                                        radius->attributes, radius->data, &error));
-    if (stretch != NULL) {
-        TOOL_TRY(run->tool, stream_put_copy(run->stream, "parameters.stretch", TYPE_F8, stretch->rows,
-                                            stretch->cols, "", stretch->data, &error));
-    }
-    if (side != NULL) {
-        TOOL_TRY(run->tool, stream_put_copy(run->stream, "parameters.side", TYPE_I4, side->rows, 1, "",
-                                            side->data, &error));
+                         *nodes = stream_find(run->stream, "nodes.x");
+    bool fits = radius != NULL && nodes != NULL && radius->rows == nodes->rows;
+    for (size_t i = 0; i < sizeof names / sizeof *names && fits; i++) {
+        char from[32], to[32];
+        snprintf(from, sizeof from, "support.%s", names[i]);
+        snprintf(to, sizeof to, "parameters.%s", names[i]);
+        const struct section *given = stream_find(run->stream, from);
+        if (given != NULL) {
+            TOOL_TRY(run->tool, stream_put_copy(run->stream, to, given->type, given->rows, given->cols,
+                                                given->attributes, given->data, &error));
+        }
     }
 }
 

@@ -70,7 +70,7 @@ static enum status build_level(struct point_grid *grid, int number, const uint8_
             continue;
         }
         nodes++;
-        level->largest_radius = fmax(level->largest_radius, grid->radius[n]);
+        level->largest_radius = fmax(level->largest_radius, grid->supports.radius[n]);
         for (int a = 0; a < dim; a++) {
             level->origin[a] = fmin(level->origin[a], grid->x[n * dim + a]);
             upper[a] = fmax(upper[a], grid->x[n * dim + a]);
@@ -90,7 +90,7 @@ static enum status build_level(struct point_grid *grid, int number, const uint8_
         for (int a = 0; a < dim; a++) {
             place[a] = grid->x[(int64_t)level->node[i] * dim + a];
         }
-        place[dim] = grid->radius[level->node[i]];
+        place[dim] = grid->supports.radius[level->node[i]];
     }
     return STATUS_OK;
 }
@@ -99,7 +99,7 @@ enum status point_grid_build(struct point_grid *grid, int dim, int64_t node_coun
                              const double *radius, struct error *error)
 {
     double least = INFINITY;
-    *grid = (struct point_grid){.dim = dim, .node_count = node_count, .x = x, .radius = radius};
+    *grid = (struct point_grid){.dim = dim, .node_count = node_count, .x = x, .supports.radius = radius};
     for (int64_t n = 0; n < node_count; n++) {
         if (!(radius[n] > 0.0) || !isfinite(radius[n])) {
             return fail(error, STATUS_INPUT, "support.radius: row %lld: %g is no radius", (long long)n,
@@ -212,16 +212,10 @@ enum status point_grid_query_box(const struct point_grid *grid, const double *lo
 double point_grid_distance2(const struct point_grid *grid, const double *x, int64_t node)
 {
     int dim = grid->dim;
-    double difference[3], square = 0.0;
+    const double *A = grid->supports.stretch;
+    double difference[3];
     vector_subtract(dim, x, grid->x + node * dim, difference);
-    if (grid->stretch == NULL) {
-        return vector_dot(dim, difference, difference);
-    }
-    for (int a = 0; a < dim; a++) {
-        double along = vector_dot(dim, grid->stretch + (node * dim + a) * dim, difference);
-        square += along * along;
-    }
-    return square;
+    return vector_square(dim, A != NULL ? A + node * dim * dim : NULL, difference);
 }
 
 enum status point_grid_query(const struct point_grid *grid, const double *x, double factor,
@@ -229,9 +223,9 @@ enum status point_grid_query(const struct point_grid *grid, const double *x, dou
 {
     int64_t kept = list->count;
     RETURN_IF_ERROR(point_grid_query_box(grid, x, x, factor, list, error));
-    if (grid->stretch != NULL) {
+    if (grid->supports.stretch != NULL) {
         for (int64_t i = kept; i < list->count; i++) {
-            double radius = factor * grid->radius[list->index[i]];
+            double radius = factor * grid->supports.radius[list->index[i]];
             list->index[kept] = list->index[i];
             kept += point_grid_distance2(grid, x, list->index[i]) < radius * radius;
         }

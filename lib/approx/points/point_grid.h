@@ -31,8 +31,8 @@ struct supports {
 struct point_grid {
     int dim;
     int64_t node_count;
-    const double *x, *radius;
-    const double *stretch; /* as of struct supports, set once the grid is built; NULL: balls */
+    const double *x;
+    struct supports supports; /* balls, unless the caller adds the stretch */
     int level_count;
     struct point_grid_level level[POINT_GRID_LEVELS];
 };

@@ -75,7 +75,8 @@ static double spacing_within(const struct support_options *options, const struct
         farthest = sqrt(farthest);
     } else {
         for (int64_t i = 0; i < count; i++) {
-            farthest = grid->radius[index[i]] > farthest ? grid->radius[index[i]] : farthest;
+            farthest =
+                grid->supports.radius[index[i]] > farthest ? grid->supports.radius[index[i]] : farthest;
         }
         farthest *= widen;
     }
@@ -83,24 +84,19 @@ static double spacing_within(const struct support_options *options, const struct
     return farthest * pow(unit_ball / (double)count, 1.0 / grid->dim);
 }
 
-/* |A^-1 g|^2 of a gradient, with A of a node: by Cramer's rule. */
+/* |A^-1 g|^2 of a gradient, with A of a node. */
 static double square_in_support(int dim, const double *stretch, int64_t node, const double *g)
 {
-    double row[4][3] = {{0.0}}, square = 0.0;
+    double A[3][3] = {{0.0}, {0.0}, {0.0, 0.0, 1.0}}, inverse[3][3], gradient[3] = {0.0};
     if (stretch == NULL) {
         return vector_dot(dim, g, g);
     }
-    row[2][2] = 1.0;
-    memcpy(row[3], g, (size_t)dim * sizeof *g);
     for (int a = 0; a < dim; a++) {
-        memcpy(row[a], stretch + (node * dim + a) * dim, (size_t)dim * sizeof *g);
+        memcpy(A[a], stretch + (node * dim + a) * dim, (size_t)dim * sizeof *g);
+        gradient[a] = g[a];
     }
-    double whole = determinant3(row[0], row[1], row[2]);
-    for (int a = 0; a < dim; a++) {
-        double part = determinant3(row[a == 0 ? 3 : 0], row[a == 1 ? 3 : 1], row[a == 2 ? 3 : 2]) / whole;
-        square += part * part;
-    }
-    return square;
+    (void)matrix_inverse(A[0], A[1], A[2], inverse);
+    return vector_square(3, inverse[0], gradient);
 }
 
 /* Judge a support: the verdict on its number of nodes and moment matrix, and the largest gradient times the
@@ -111,7 +107,7 @@ static enum status judge(const struct support_options *options, const struct poi
 {
     struct mls_support support = {.x = x,
                                   .nodes = grid->x,
-                                  .supports = {grid->radius, grid->stretch},
+                                  .supports = grid->supports,
                                   .widen = found->widen,
                                   .neighbours = index,
                                   .count = count};
@@ -125,7 +121,7 @@ static enum status judge(const struct support_options *options, const struct poi
     RETURN_IF_ERROR(
         mls_evaluate(&options->mls, &support, &worker->work, NULL, worker->gradient, &found->verdict, error));
     for (int64_t i = 0; i < count && found->verdict == MLS_GOOD; i++) {
-        double square = square_in_support(dim, grid->stretch, index[i], worker->gradient + i * dim);
+        double square = square_in_support(dim, grid->supports.stretch, index[i], worker->gradient + i * dim);
         largest2 = square > largest2 ? square : largest2;
     }
     found->steepness = sqrt(largest2) * spacing_within(options, grid, x, index, count, found->widen);
@@ -230,7 +226,7 @@ static enum status fail_support(const struct search *search, int64_t row, const 
                                 enum mls_verdict verdict, struct error *error)
 {
     char stray[96] = "";
-    const double *radius = search->grid->radius;
+    const double *radius = search->grid->supports.radius;
     if (count > 0) {
         int32_t widest = index[0];
         for (int64_t i = 1; i < count; i++) {

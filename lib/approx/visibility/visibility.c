@@ -82,7 +82,7 @@ static void note_facet(struct visibility *visibility, const int32_t *facet, int3
     int dim = visibility->cells.dim;
     const double *x = visibility->cells.x, *y = x + (int64_t)node * dim;
     double area[3] = {0.0, 0.0, 0.0}, middle[3], from[3], radius = 0.0;
-    double tolerance = COARSE_ROUND_OFF * visibility->grid.radius[node];
+    double tolerance = COARSE_ROUND_OFF * visibility->grid.supports.radius[node];
     face_area_vector(dim, x, facet, area);
     vector_middle(dim, x, dim, facet, middle);
     vector_subtract(dim, y, middle, from);
@@ -132,7 +132,7 @@ enum status visibility_build(const struct cells *cells, struct supports supports
     }
     RETURN_IF_ERROR(
         point_grid_build(&visibility->grid, cells->dim, cells->node_count, cells->x, supports.radius, error));
-    visibility->grid.stretch = supports.stretch;
+    visibility->grid.supports = supports;
     if (visibility->across == NULL) {
         return STATUS_OK;
     }

@@ -199,19 +199,40 @@ KERNEL_INLINE void variance_stress(int dim, const struct variance *v, lanes S[9]
     }
 }
 
+/* What the histories of viscoelastic cells add (prony.h), to the forces on the s_e and the stress on F. */
+KERNEL_INLINE void add_rest_forces(const struct body *body, int64_t q, int64_t i, int dim,
+                                   const struct variance *v, block_edges at_edges, lanes stress[9])
+{
+    lanes rest[3], more[3], force;
+    for (int e = 0; e < CELL_EDGES(dim); e++) {
+        for (int b = 0; b < dim; b++) {
+            LOAD(rest[b], body->prony.rest + (PRONY_OFFSETS + e * dim + b) * body->point_count + q);
+        }
+        lanes_apply(dim, false, v->F, rest, more);
+        for (int a = 0; a < dim; a++) {
+            LOAD(force, at_edges[e * dim + a] + i);
+            force += more[a];
+            STORE(at_edges[e * dim + a] + i, force);
+            for (int b = 0; b < dim; b++) {
+                stress[a * dim + b] += v->offset[e][a] * rest[b];
+            }
+        }
+    }
+}
+
 /* The forces of the variance on the s_e, into at_edges, and its stress on F, added to P, in the cells at i
- * and q; of viscoelastic cells with what their histories add (prony.h): on F as much as is not in P yet. */
+ * and q. */
 KERNEL_INLINE void variance_forces(const struct body *body, int64_t q, int64_t i, int dim, bool relaxes,
                                    const block_edges edges, const block_vertices vertices,
                                    block_edges at_edges, block_rows P)
 {
     struct variance v;
-    lanes shear, bulk, factor, rest[3], force[3], more[3], S[9], outer[9] = {{0.0}}, stress[9], turned[9];
+    lanes shear, bulk, value, force[3], S[9], outer[9] = {{0.0}}, stress[9], turned[9];
     LOAD(shear, body->cells.variance_shear + q);
     LOAD(bulk, body->cells.variance_bulk + q);
     if (relaxes) {
-        load_factors(body, q, &factor);
-        shear *= factor;
+        load_factors(body, q, &value);
+        shear *= value;
     }
     vary_cells(body, q, i, dim, edges, vertices, EDGE_OFFSET * EDGE_OFFSET * shear,
                EDGE_OFFSET * EDGE_OFFSET * bulk, &v);
@@ -219,25 +240,20 @@ KERNEL_INLINE void variance_forces(const struct body *body, int64_t q, int64_t i
     lanes_product(dim, v.F, S, stress);
     for (int e = 0; e < CELL_EDGES(dim); e++) {
         lanes_apply(dim, false, v.FZ, v.along[e], force);
-        for (int b = 0; b < dim && relaxes; b++) {
-            LOAD(rest[b], body->prony.rest + (PRONY_OFFSETS + e * dim + b) * body->point_count + q);
-        }
-        if (relaxes) {
-            lanes_apply(dim, false, v.F, rest, more);
-        }
         for (int a = 0; a < dim; a++) {
-            force[a] += relaxes ? more[a] : (lanes){0.0};
             STORE(at_edges[e * dim + a] + i, force[a]);
             for (int b = 0; b < dim; b++) {
                 outer[a * dim + b] += v.offset[e][a] * v.along[e][b];
-                stress[a * dim + b] += relaxes ? v.offset[e][a] * rest[b] : (lanes){0.0};
             }
         }
     }
+    if (relaxes) {
+        add_rest_forces(body, q, i, dim, &v, at_edges, stress);
+    }
     lanes_product(dim, outer, v.Z, turned);
     for (int k = 0; k < dim * dim; k++) {
-        LOAD(factor, P[k] + i);
-        factor += stress[k] + turned[k];
-        STORE(P[k] + i, factor);
+        LOAD(value, P[k] + i);
+        value += stress[k] + turned[k];
+        STORE(P[k] + i, value);
     }
 }

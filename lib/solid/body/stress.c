@@ -174,9 +174,9 @@ void stress_points(const struct body *body, const struct block *block, block_row
 void stress_limit_stretch(const double F[9], double Z[9])
 {
     double sum[9], cofactors[9];
-    for (int k = 0; k < 9; k++) {
-        sum[k] = (k % 4 == 0 ? 3.0 : 0.0) + F[k / 3] * F[k % 3] + F[3 + k / 3] * F[3 + k % 3] +
-                 F[6 + k / 3] * F[6 + k % 3];
+    right_cauchy_green(F, sum);
+    for (int k = 0; k < 3; k++) {
+        sum[4 * k] += 3.0;
     }
     cofactor(sum, cofactors);
     for (int k = 0; k < 9; k++) {
