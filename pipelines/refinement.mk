@@ -108,7 +108,7 @@ adaptive_gmsh = $(filter-out -2 -3,$(call $($(1).mesh).gmsh,$(2)))
 define ADAPTIVE_RUN
 $(ADAPTIVE)/$(1)-$(2).row: $(CONVERGENCE_INPUT)/$(1).scene $($($(1).mesh).geometry) $(call adaptive_reference,$(1)) $(ADAPTIVE_SCRIPTS) | $(ADAPTIVE_PROGRAMS)
 	@mkdir -p $$(@D)
-	ORDER=1.5 UNIT=$($($(1).mesh).unit) ROUNDS=1 GMSH='$(call adaptive_gmsh,$(1),$(2))' bash pipelines/adaptive/rounds.sh $(1) $(2) \
+	ORDER= UNIT=$($($(1).mesh).unit) ROUNDS=1 GMSH='$(call adaptive_gmsh,$(1),$(2))' bash pipelines/adaptive/rounds.sh $(1) $(2) \
 	    $$(wordlist 1,2,$$^) 1um $$(word 3,$$^) nodes $$(@:.row=) > $$@
 endef
 $(foreach c,$(ADAPTIVE_EFFECTIVITY),$(foreach s,$(call adaptive_sizes,$(c)),$(eval $(call ADAPTIVE_RUN,$(c),$(s)))))

@@ -8,8 +8,9 @@ static const char usage[] =
     "per direction (gmsh -clscale 2, voxels with twice -h: an eighth of the work, 2D a quarter), and\n"
     "estimates how far FINE is from the solution on ever finer clouds; - is standard input. The estimate is\n"
     "extrapolated (Richardson): at each node of FINE, the distance of the two fields by\n"
-    "2^ORDER - 1. The order is 2 where a solution is smooth, and 1 or a little more where it is\n"
-    "singular, as where prescribed and free boundary meet: the value between, 1.5, is assumed.\n"
+    "2^ORDER - 1. The order is 2 where a solution is smooth, and between 1 and 2 where it is singular, as\n"
+    "where prescribed and free boundary meet. It is taken from the gradients of the two fields, whose\n"
+    "errors fall by half where the solution is smooth: twice their order, and at least 1.5.\n"
     "With a third result, COARSER, of half as many nodes again, the order is computed from the three, and\n"
     "limited to 1 .. 2.\n"
     "\n"
@@ -31,11 +32,11 @@ static const char usage[] =
     "\n"
     "The estimate does not contain errors that both results share: of the geometry (a polygon for a curve,\n"
     "a segmentation), the material, conditions and contacts. It is no upper bound. On clouds too coarse\n"
-    "to converge with this order it may be wrong by a factor of two or three; where a solution is smooth\n"
-    "it is too large by such a factor or more; at single nodes it is less certain than on average.\n"
+    "to converge with this order it may be wrong by a factor of two or three; at single nodes it is less\n"
+    "certain than on average.\n"
     "\n"
     "Options:\n"
-    "  -p, --order ORDER      assumed order, above 0 and up to 4 (default 1.5)\n"
+    "  -p, --order ORDER      the order, above 0 and up to 4 (default: as observed)\n"
     "  -r, --ratio RATIO      spacing of COARSE by that of FINE, above 1 (default 2)\n"
     "      --tol-avg M        largest average admitted (m; or with a unit, e.g. 0.1mm)\n"
     "      --tol-max M        largest maximum admitted\n"
@@ -147,15 +148,50 @@ static double average_difference(const struct tool *tool, const struct side *fir
     return findings.statistics.average;
 }
 
-/* The assumed order, or that observed from the average differences of three results. These are averages over
- * the whole body even if a region is requested: the error of a region partly comes from elsewhere, and an
- * average over more nodes varies less. */
+/* The square of the error of a field's gradient, by its recovered gradient; NAN without cells or where a
+ * value is not a number. */
+static enum status gradient_error(const struct side *side, double *sum, struct error *error)
+{
+    const struct nodal_field *field = &side->field;
+    const struct cells *cells = &field->cells;
+    FREED_BY(groups_free) struct groups regions = {0};
+    NEW_SCRATCH(double, squared, cells->count, error);
+    *sum = NAN;
+    if (cells->count == 0 || !isfinite(field_largest(cells->node_count, field->cols, field->values))) {
+        return STATUS_OK;
+    }
+    RETURN_IF_ERROR(stream_groups(&side->stream, GROUP_REGION, false, &regions, error));
+    RETURN_IF_ERROR(field_error_recovered(cells, regions.group, (int32_t)regions.names.count, field->cols,
+                                          field->values, squared, error));
+    *sum = 0.0;
+    for (int64_t q = 0; q < cells->count; q++) {
+        *sum += squared[q];
+    }
+    return STATUS_OK;
+}
+
+/* The order by the errors of the gradients of two results. */
+static double order_of_gradients(const struct tool *tool, double ratio, const struct side *fine,
+                                 const struct side *coarse)
+{
+    double near, far;
+    TOOL_TRY(tool, gradient_error(fine, &near, &error));
+    TOOL_TRY(tool, gradient_error(coarse, &far, &error));
+    bool known = isfinite(near) && isfinite(far);
+    return known ? field_error_order(near, far, ratio, FIELD_ERROR_ORDER) : FIELD_ERROR_ORDER;
+}
+
+/* The order that is requested, or that observed. It is that of the whole body even if a region is requested:
+ * the error of a region partly comes from elsewhere, and an average over more nodes varies less. */
 static double choose_order(struct tool *tool, double ratio, const struct side *fine,
                            const struct side *coarse, const struct findings *findings)
 {
     struct side coarser;
+    if (tool_given(tool, "order")) {
+        return tool_number(tool, "order", 0.01, 4.0, 0.0);
+    }
     if (tool->operand_count < 3) {
-        return tool_number(tool, "order", 0.01, 4.0, FIELD_ERROR_ORDER);
+        return order_of_gradients(tool, ratio, fine, coarse);
     }
     side_read(tool, tool->operands[2], fine->section->name, &coarser);
     (void)check_coarser(tool, ratio, coarse, &coarser);
@@ -163,7 +199,7 @@ static double choose_order(struct tool *tool, double ratio, const struct side *f
         tool_given(tool, "region") ? average_difference(tool, fine, coarse) : findings->statistics.average;
     double far = average_difference(tool, coarse, &coarser);
     stream_free(&coarser.stream);
-    return field_error_order(near, far, ratio);
+    return field_error_order(near, far, ratio, FIELD_ERROR_LEAST_ORDER);
 }
 
 /* Print the error of the iterations of both results that the estimate, `share` of their difference, contains,

@@ -10,7 +10,7 @@
 # Environment: UNIT of the geometry, which is no image, about NODES at most (default 20000), ROUNDS at most (default 8), GMSH more arguments for gmsh,
 # of an image SPACING of the first round's lattice, such as 6mm, and VOXELS more arguments for voxels (-l labels.tsv; not -h),
 # REFINE_GROUPS arguments for tag (GROUPS of make; bash has an array of that name), quoted as in a shell: -u mm -f 'held=low:z,5',
-# ORDER of the error for fielderr (default 1), SUPPORT arguments for support (-k 2), START a factor for the sizes of the first round (default 1), LEAST a length with unit below which no size goes (sizefield), GRADED=no: all sizes
+# ORDER of the error for fielderr (default 1; empty: as it observes), SUPPORT arguments for support (-k 2), START a factor for the sizes of the first round (default 1), LEAST a length with unit below which no size goes (sizefield), GRADED=no: all sizes
 # made smaller alike, AFRESH=yes: no solution begins from that of the last round (mtled --start), REPEAT how often the finer solution is timed: the least counts.
 #
 # Exit status: 0 below TOL; 1 the budget of nodes or rounds is spent, or a round failed: the one of least estimate is kept; 2 wrong usage.
@@ -203,11 +203,11 @@ attempt() {
     { time { { [ -n "$last" ] && solve "$work/coarse_$body" "$work/coarse.dat" "$last"; } || solve "$work/coarse_$body" "$work/coarse.dat"; }; } \
         2> "$work/coarse.time" || return 1
     what=fielderr
-    { time fielderr -p "${ORDER:-1}" --skip-outside "$work/u.dat" "$work/coarse.dat" > "$work/errors.tsv" 2> "$work/log"; } 2> "$work/estimate.time" || return 1
+    { time fielderr ${order:+-p "$order"} --skip-outside "$work/u.dat" "$work/coarse.dat" > "$work/errors.tsv" 2> "$work/log"; } 2> "$work/estimate.time" || return 1
 }
 
 printf 'round\tnodes\tmean_mm\tmax_mm\tseconds\tall_seconds\n' | tee "$out/rounds.tsv"
-factor=$start least=${LEAST-} again=0 stuck=0
+order=${ORDER-1} factor=$start least=${LEAST-} again=0 stuck=0
 # How many nodes sizes asked for, by how many were made of them: learnt in each round. The octree of voxels makes up to twice as many.
 asked='' asked_by_made=$([ "$image" ] && echo 0.5 || echo 1)
 for ((round = 1; round <= rounds; round++)); do

@@ -24,13 +24,13 @@ TEST(extrapolation)
     for (double p = 1.0; p <= 2.0; p += 0.25) {
         double fine = pow(2.0, p) - 1.0, coarse = pow(4.0, p) - pow(2.0, p); /* differences, c h^p = 1 */
         AT_MOST(fabs(fine * field_error_share(2.0, p) - 1.0), 1e-14);
-        AT_MOST(fabs(field_error_order(fine, coarse, 2.0) - p), 1e-14);
+        AT_MOST(fabs(field_error_order(fine, coarse, 2.0, FIELD_ERROR_LEAST_ORDER) - p), 1e-14);
     }
     AT_MOST(fabs(field_error_share(3.0, 2.0) - 0.125), 1e-15);
-    assert_true(field_error_order(1.0, 8.0, 2.0) == FIELD_ERROR_MOST_ORDER);
-    assert_true(field_error_order(1.0, 1.5, 2.0) == FIELD_ERROR_LEAST_ORDER);
-    assert_true(field_error_order(0.0, 1.0, 2.0) == FIELD_ERROR_MOST_ORDER);
-    assert_true(field_error_order(1.0, NAN, 2.0) == FIELD_ERROR_MOST_ORDER);
+    assert_true(field_error_order(1.0, 8.0, 2.0, FIELD_ERROR_LEAST_ORDER) == FIELD_ERROR_MOST_ORDER);
+    assert_true(field_error_order(1.0, 1.5, 2.0, FIELD_ERROR_LEAST_ORDER) == FIELD_ERROR_LEAST_ORDER);
+    assert_true(field_error_order(0.0, 1.0, 2.0, FIELD_ERROR_LEAST_ORDER) == FIELD_ERROR_MOST_ORDER);
+    assert_true(field_error_order(1.0, NAN, 2.0, FIELD_ERROR_LEAST_ORDER) == FIELD_ERROR_MOST_ORDER);
 }
 
 /* A mean over the body is no mean over its nodes, which a graded cloud has in one corner. */

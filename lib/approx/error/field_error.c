@@ -11,13 +11,13 @@ double field_error_share(double ratio, double order)
     return 1.0 / (pow(ratio, order) - 1.0);
 }
 
-double field_error_order(double fine, double coarse, double ratio)
+double field_error_order(double fine, double coarse, double ratio, double least)
 {
     double order = log(coarse / fine) / log(ratio);
     if (fine == 0.0 || !isfinite(order)) {
         return FIELD_ERROR_MOST_ORDER;
     }
-    return fmin(fmax(order, FIELD_ERROR_LEAST_ORDER), FIELD_ERROR_MOST_ORDER);
+    return fmin(fmax(order, least), FIELD_ERROR_MOST_ORDER);
 }
 
 double field_error_mean(const struct cells *cells, const double *value)

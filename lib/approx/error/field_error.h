@@ -6,8 +6,9 @@
  *
  *   u_h - u = (u_rh - u_h) / (r^p - 1). (29)
  * p is known only between bounds: 2 where the solution is smooth, slightly above 1 where a corner or a
- * junction of prescribed and free boundary makes it singular. The mean of the bounds is assumed; from three
- * clouds it is observed.
+ * junction of prescribed and free boundary makes it singular. From three clouds it is observed. From two the
+ * errors of their gradients tell whether the solution is smooth: these are then of order one. p is twice
+ * their order, and at least the mean of the bounds: near a singularity they fall more slowly than u's error.
  *
  * Recovery (Zienkiewicz and Zhu, A simple error estimator and adaptive procedure for practical engineering
  * analysis, Int. J. Numer. Meth. Eng. 24 (1987), 337). The gradient of the linear interpolant in a cell is
@@ -18,7 +19,7 @@
 
 #include "approx/field/field.h"
 
-/* Bounds of the order, and the order that is assumed. */
+/* Bounds of the order, and the order of singular solutions. */
 #define FIELD_ERROR_LEAST_ORDER 1.0
 #define FIELD_ERROR_MOST_ORDER 2.0
 #define FIELD_ERROR_ORDER 1.5
@@ -27,9 +28,9 @@
 double field_error_share(double ratio, double order);
 
 /* Observed order from three fields: `fine` is the difference of the fine and the middle one, `coarse` that of
- * the middle and the coarse one. It is limited to the bounds; it is the upper bound where `coarse` is not
- * finite. */
-double field_error_order(double fine, double coarse, double ratio);
+ * the middle and the coarse one; or from two, by the squares of the errors of their gradients. It is limited
+ * to `least` and the upper bound; it is the latter where `coarse` is not finite. */
+double field_error_order(double fine, double coarse, double ratio, double least);
 
 /* Mean over the body of a value at its nodes, linear in the cells; cells with a node whose value is NaN are
  * left out. The average over the nodes of a graded cloud would be dominated by the regions with many nodes.
