@@ -1,6 +1,5 @@
 #include "base/dense.h"
 
-#include "base/chunks.h"
 #include "base/processor.h"
 
 #include <math.h>
@@ -30,60 +29,17 @@ ALL_SETS double dense_dot(int64_t count, const double *x, const double *y)
     return rest;
 }
 
-enum { PANEL = 64 };                 /* columns of L that are computed at a time, and then subtracted */
-enum { ENTRIES_FOR_THREAD = 50000 }; /* see chunks_of */
-
-/* Rows and columns of L from k to before `last`. */
-static bool factorise_block(int64_t n, int64_t k, int64_t last, double *matrix)
+bool dense_factorise(int64_t n, double *matrix)
 {
-    for (int64_t c = k; c < last; c++) {
+    for (int64_t c = 0; c < n; c++) {
         double *above = matrix + c * n, pivot = above[c]; /* row c of L^T: the column of L below the pivot */
         if (!(pivot > 0.0 && isfinite(pivot))) {
             return false;
         }
         above[c] = sqrt(pivot);
-        for (int64_t i = c + 1; i < last; i++) {
+        for (int64_t i = c + 1; i < n; i++) {
             above[i] = matrix[i * n + c] /= above[c];
             dense_add_row(i - c, -above[i], above + c + 1, matrix + i * n + c + 1);
-        }
-    }
-    return true;
-}
-
-/* The columns of L from k to before `last` in the rows from there on, and these less what they take: each
- * entry is summed in the order of the columns, as without panels. */
-static void reduce(int64_t n, int64_t k, int64_t last, double *matrix)
-{
-#pragma omp parallel num_threads(chunks_of((n - last) * (n - last), ENTRIES_FOR_THREAD).threads)
-    {
-#pragma omp for schedule(static)
-        for (int64_t i = last; i < n; i++) {
-            double *row = matrix + i * n;
-            for (int64_t c = k; c < last; c++) {
-                double *above = matrix + c * n;
-                above[i] = row[c] /= above[c];
-                dense_add_row(last - c - 1, -row[c], above + c + 1, row + c + 1);
-            }
-        }
-#pragma omp for schedule(static, 1)
-        for (int64_t i = last; i < n; i++) {
-            double *row = matrix + i * n;
-            for (int64_t c = k; c < last; c++) {
-                dense_add_row(i + 1 - last, -row[c], matrix + c * n + last, row + last);
-            }
-        }
-    }
-}
-
-bool dense_factorise(int64_t n, double *matrix)
-{
-    for (int64_t k = 0; k < n; k += PANEL) {
-        int64_t last = n - k < PANEL ? n : k + PANEL;
-        if (!factorise_block(n, k, last, matrix)) {
-            return false;
-        }
-        if (last < n) {
-            reduce(n, k, last, matrix);
         }
     }
     return true;

@@ -1,7 +1,9 @@
-/* Dense Cholesky factors: the same bits as entry by entry, whatever the threads, and solutions. */
+/* Cholesky factors, dense and within a profile: the same bits as entry by entry, whatever the threads, and
+ * solutions. */
 #include "unit.h"
 
 #include "base/dense.h"
+#include "base/profile.h"
 
 /* A symmetric positive definite matrix without pattern. */
 static double *matrix_of(int64_t n)
@@ -32,24 +34,65 @@ static void factorise_plainly(int64_t n, double *matrix)
     }
 }
 
-/* For one row, one panel and several, and for rows that are left over. */
+/* A profile of `count` rows of blocks, dense for reach 0, else of up to so many blocks. */
+static struct profile profile_of(int64_t count, int64_t numbers, int64_t reach)
+{
+    struct profile profile;
+    GOOD(profile_begin(count, numbers, &profile, &error));
+    for (int64_t row = 0; row < count; row++) {
+        profile.first[row] = reach == 0 || row < reach ? 0 : row - (row * 7 + 3) % reach;
+    }
+    GOOD(profile_lay_out(&profile, &error));
+    return profile;
+}
+
+/* Copy the rows of a matrix into a profile, or `back`; what is outside becomes 0. */
+static void copy_rows(const struct profile *profile, bool back, double *matrix, double *value)
+{
+    int64_t n = profile->count * profile->numbers;
+    for (int64_t i = 0; i < n; i++) {
+        int64_t row = i / profile->numbers, first = profile->first[row] * profile->numbers;
+        double *at = profile_block(profile, row, profile->first[row], value) +
+                     i % profile->numbers * profile_stride(profile, row);
+        memset(matrix + i * n, 0, (size_t)first * sizeof *matrix);
+        memcpy(back ? matrix + i * n + first : at, back ? at : matrix + i * n + first,
+               (size_t)(i + 1 - first) * sizeof *matrix);
+    }
+}
+
+/* For one row, one panel and several, for rows that are left over, and for dense and narrow profiles. */
 TEST(same_bits)
 {
-    static const int64_t sizes[] = {1, 2, 7, 63, 64, 65, 131, 192, 300, 517};
+    static const int64_t counts[] = {1, 2, 7, 16, 43, 86}, reaches[] = {0, 3, 11};
     int before = omp_get_max_threads();
-    for (size_t s = 0; s < sizeof sizes / sizeof *sizes; s++) {
-        int64_t n = sizes[s];
-        size_t bytes = (size_t)(n * n) * sizeof(double);
-        double *expected = matrix_of(n);
+    for (int k = 0; k < 18; k++) {
+        int64_t n = counts[k / 3] * 6;
+        struct profile profile = profile_of(counts[k / 3], 6, reaches[k % 3]);
+        double *value = zeros(profile.size, sizeof *value), *expected = matrix_of(n), *matrix = matrix_of(n);
+        copy_rows(&profile, false, expected, value);
         factorise_plainly(n, expected);
         for (int threads = 1; threads <= 3; threads++) {
-            double *matrix = matrix_of(n);
+            copy_rows(&profile, false, matrix, value);
             omp_set_num_threads(threads);
-            assert_true(dense_factorise(n, matrix));
-            assert_memory_equal(matrix, expected, bytes);
-            free(matrix);
+            assert_true(profile_factorise(&profile, value));
+            double *factor = zeros(n * n, sizeof *factor);
+            copy_rows(&profile, true, factor, value);
+            for (int64_t i = 0; i < n * n; i++) {
+                assert_true(i % n > i / n || factor[i] == expected[i]);
+            }
+            double x[600], y[600];
+            for (int64_t i = 0; i < n; i++) {
+                x[i] = y[i] = (double)(i % 7) - 3.0;
+            }
+            profile_solve(&profile, value, x);
+            dense_solve(n, expected, y);
+            for (int64_t i = 0; i < n; i++) {
+                AT_MOST(fabs(x[i] - y[i]), 1e-14);
+            }
         }
-        free(expected);
+        value[profile.size - 1] = -1e9;
+        assert_false(profile_factorise(&profile, value));
+        profile_free(&profile);
     }
     omp_set_num_threads(before);
 }

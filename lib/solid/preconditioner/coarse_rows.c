@@ -77,25 +77,31 @@ void coarse_rows_add_average(struct coarse_rows *rows, const struct average *ave
     }
 }
 
-/* The block of a group, above, and another one. */
-static double *block_of(const struct coarse_space *coarse, int numbers, int32_t above, int32_t below,
-                        double *matrix)
+void coarse_rows_widen(const struct coarse_rows *rows, struct profile *profile)
 {
-    return matrix + (above * coarse->count * coarse->dim + below) * numbers;
+    int64_t first = profile->count;
+    for (int64_t i = 0; i < rows->count; i++) {
+        first = rows->group[i] < first ? rows->group[i] : first;
+    }
+    for (int64_t i = 0; i < rows->count; i++) {
+        int64_t *of_group = &profile->first[rows->group[i]];
+        *of_group = first < *of_group ? first : *of_group;
+    }
 }
 
-KERNEL_INLINE void square(const struct coarse_rows *rows, int dim, int row, double factor, double *matrix)
+KERNEL_INLINE void square(const struct coarse_rows *rows, int dim, int row, double factor,
+                          const struct profile *profile, double *matrix)
 {
     int numbers = (dim + 1) * dim;
-    int64_t size = rows->coarse->count * dim;
     for (int64_t s = 0; s < rows->count; s++) {
+        int64_t stride = profile_stride(profile, rows->group[s]);
         for (int64_t t = 0; t < rows->count; t++) {
             if (rows->group[t] > rows->group[s]) {
                 continue;
             }
             const double *upper = rows->value[s][row], *lower = rows->value[t][row];
-            double *to = block_of(rows->coarse, numbers, rows->group[s], rows->group[t], matrix);
-            for (int i = 0; i < numbers; i++, to += size) {
+            double *to = profile_block(profile, rows->group[s], rows->group[t], matrix);
+            for (int i = 0; i < numbers; i++, to += stride) {
                 double scaled = factor * upper[i];
                 for (int k = 0; k < numbers; k++) {
                     to[k] += scaled * lower[k];
@@ -105,27 +111,32 @@ KERNEL_INLINE void square(const struct coarse_rows *rows, int dim, int row, doub
     }
 }
 
-ALL_SETS void coarse_rows_square(const struct coarse_rows *rows, int row, double factor, double *matrix)
+ALL_SETS void coarse_rows_square(const struct coarse_rows *rows, int row, double factor,
+                                 const struct profile *profile, double *matrix)
 {
     if (rows->coarse->dim == 2) {
-        square(rows, 2, row, factor, matrix);
+        square(rows, 2, row, factor, profile, matrix);
     } else {
-        square(rows, 3, row, factor, matrix);
+        square(rows, 3, row, factor, profile, matrix);
     }
 }
 
-KERNEL_INLINE void multiply(const struct coarse_rows *rows, int dim, int64_t node, double *matrix)
+KERNEL_INLINE void multiply(const struct coarse_rows *rows, int dim, int64_t node,
+                            const struct profile *profile, double *matrix)
 {
     const struct coarse_space *coarse = rows->coarse;
     int numbers = (dim + 1) * dim;
-    int64_t size = coarse->count * dim;
     for (int64_t i = coarse->shares.ptr[node]; i < coarse->shares.ptr[node + 1]; i++) {
         int32_t group = coarse->shares.idx[i];
+        int64_t stride = profile_stride(profile, group);
         double value[4];
         coarse_space_values(coarse, node, group, coarse->shares.value[i], value);
         for (int64_t t = 0; t < rows->count; t++) {
-            double *to = block_of(coarse, numbers, group, rows->group[t], matrix);
-            for (int k = 0; k < numbers && rows->group[t] <= group; k++, to += size) {
+            if (rows->group[t] > group) {
+                continue;
+            }
+            double *to = profile_block(profile, group, rows->group[t], matrix);
+            for (int k = 0; k < numbers; k++, to += stride) {
                 const double *product = rows->value[t][k % dim];
                 for (int j = 0; j < numbers; j++) {
                     to[j] += value[k / dim] * product[j];
@@ -135,11 +146,12 @@ KERNEL_INLINE void multiply(const struct coarse_rows *rows, int dim, int64_t nod
     }
 }
 
-ALL_SETS void coarse_rows_multiply(const struct coarse_rows *rows, int64_t node, double *matrix)
+ALL_SETS void coarse_rows_multiply(const struct coarse_rows *rows, int64_t node,
+                                   const struct profile *profile, double *matrix)
 {
     if (rows->coarse->dim == 2) {
-        multiply(rows, 2, node, matrix);
+        multiply(rows, 2, node, profile, matrix);
     } else {
-        multiply(rows, 3, node, matrix);
+        multiply(rows, 3, node, profile, matrix);
     }
 }

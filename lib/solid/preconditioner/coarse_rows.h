@@ -2,6 +2,7 @@
  * lib/solid/preconditioner. */
 #pragma once
 
+#include "base/profile.h"
 #include "solid/constraint/average.h"
 #include "solid/preconditioner/coarse_space.h"
 
@@ -29,7 +30,12 @@ void coarse_rows_add(struct coarse_rows *rows, int64_t node, int count, const do
 void coarse_rows_add_average(struct coarse_rows *rows, const struct average *average, double factor,
                              int count, const double *direction);
 
-/* The lower triangle of matrix[size * size], size = coarse->count * dim, += factor row^T row of functional
- * `row`; or what the fields move a node by, transposed, times the first dim of them. */
-void coarse_rows_square(const struct coarse_rows *rows, int row, double factor, double *matrix);
-void coarse_rows_multiply(const struct coarse_rows *rows, int64_t node, double *matrix);
+/* A matrix along the fields, within a profile of blocks by groups, += factor row^T row of functional `row`;
+ * or what the fields move a node by, transposed, times the first dim of them. */
+void coarse_rows_square(const struct coarse_rows *rows, int row, double factor, const struct profile *profile,
+                        double *matrix);
+void coarse_rows_multiply(const struct coarse_rows *rows, int64_t node, const struct profile *profile,
+                          double *matrix);
+
+/* Widen a profile so that it holds the square of functionals. */
+void coarse_rows_widen(const struct coarse_rows *rows, struct profile *profile);

@@ -2,6 +2,7 @@
 
 #include "approx/cells/cells.h"
 #include "base/chunks.h"
+#include "base/lists.h"
 #include "base/memory.h"
 #include "base/processor.h"
 #include "base/sets.h"
@@ -90,13 +91,12 @@ static enum status group_nodes(int dim, int64_t nodes, const double *X, const st
     return STATUS_OK;
 }
 
-/* The mean of the nodes of each group. */
-static enum status place_centres(struct coarse_space *coarse, const struct node_groups *groups,
-                                 struct error *error)
+/* The mean of the nodes of each group, centre[count * dim]. */
+static enum status place_centres(const struct coarse_space *coarse, const struct node_groups *groups,
+                                 double *centre, struct error *error)
 {
     int dim = coarse->dim;
     NEW_SCRATCH(int64_t, size, groups->count, error);
-    RETURN_IF_ERROR(NEW_ARRAY(&coarse->centre, groups->count * dim, error));
     for (int64_t n = 0; n < coarse->node_count; n++) {
         if (groups->group[n] >= 0) {
             size[groups->group[n]]++;
@@ -105,8 +105,42 @@ static enum status place_centres(struct coarse_space *coarse, const struct node_
     for (int64_t n = 0; n < coarse->node_count; n++) {
         int64_t c = groups->group[n];
         if (c >= 0) {
-            add_scaled(dim, 1.0 / (double)size[c], coarse->X + n * dim, coarse->centre + c * dim);
+            add_scaled(dim, 1.0 / (double)size[c], coarse->X + n * dim, centre + c * dim);
         }
+    }
+    return STATUS_OK;
+}
+
+/* Number the groups along the axis on which their centres are spread most: so the profile is narrow, of
+ * bodies that touch each other, too. */
+static enum status sort_groups(struct coarse_space *coarse, struct node_groups *groups, struct error *error)
+{
+    int dim = coarse->dim, axis = 0;
+    double spread[3] = {0.0};
+    NEW_SCRATCH(double, centre, groups->count * dim, error);
+    NEW_SCRATCH(struct placed, placed, groups->count, error);
+    NEW_SCRATCH(int32_t, number, groups->count, error);
+    RETURN_IF_ERROR(NEW_ARRAY(&coarse->centre, groups->count * dim, error));
+    RETURN_IF_ERROR(place_centres(coarse, groups, centre, error));
+    for (int a = 0; a < dim; a++) {
+        double least = INFINITY, most = -INFINITY;
+        for (int64_t c = 0; c < groups->count; c++) {
+            least = fmin(least, centre[c * dim + a]);
+            most = fmax(most, centre[c * dim + a]);
+        }
+        spread[a] = most - least;
+        axis = spread[a] > spread[axis] ? a : axis;
+    }
+    for (int64_t c = 0; c < groups->count; c++) {
+        placed[c] = (struct placed){centre[c * dim + axis], c};
+    }
+    qsort(placed, (size_t)groups->count, sizeof *placed, compare_placed);
+    for (int64_t c = 0; c < groups->count; c++) {
+        number[placed[c].item] = (int32_t)c;
+        memcpy(coarse->centre + c * dim, centre + placed[c].item * dim, (size_t)dim * sizeof *centre);
+    }
+    for (int64_t n = 0; n < coarse->node_count; n++) {
+        groups->group[n] = groups->group[n] >= 0 ? number[groups->group[n]] : -1;
     }
     return STATUS_OK;
 }
@@ -170,7 +204,7 @@ enum status coarse_space_build(int dim, int64_t node_count, const double *X,
         RETURN_IF_ERROR(group_nodes(dim, node_count, X, neighbours, runs, &groups, error));
         coarse->group_count = groups.count;
         coarse->count = groups.count * (dim + 1);
-        RETURN_IF_ERROR(place_centres(coarse, &groups, error));
+        RETURN_IF_ERROR(sort_groups(coarse, &groups, error));
         RETURN_IF_ERROR(share_unity(coarse, neighbours, &groups, error));
     }
     return STATUS_OK;

@@ -13,8 +13,8 @@
 enum { NODES_FOR_THREAD = 200 }; /* see chunks_of */
 enum { MOST_SUMS = 4 };          /* chunks, each of which has a matrix of its own */
 
-static void add_node(const struct body *body, int32_t n, struct block_row *row, struct coarse_rows *rows,
-                     double *matrix)
+/* The products of a node's row of the stiffness with the coarse fields. */
+static void take_node(const struct body *body, int32_t n, struct block_row *row, struct coarse_rows *rows)
 {
     int dim = body->dim;
     block_row_make(body, n, row);
@@ -22,8 +22,15 @@ static void add_node(const struct body *body, int32_t n, struct block_row *row, 
     for (int64_t m = 0; m < row->count; m++) {
         coarse_rows_add(rows, body->order.nodes[row->node[m]], dim + 1, row->block + m * (dim + 1) * dim);
     }
-    coarse_rows_multiply(rows, body->order.nodes[n], matrix);
-    coarse_rows_square(rows, dim, 1.0 / row->volume, matrix);
+}
+
+static void add_node(const struct body *body, int32_t n, struct block_row *row, struct coarse_rows *rows,
+                     const struct profile *profile, double *matrix)
+{
+    int dim = body->dim;
+    take_node(body, n, row, rows);
+    coarse_rows_multiply(rows, body->order.nodes[n], profile, matrix);
+    coarse_rows_square(rows, dim, 1.0 / row->volume, profile, matrix);
 }
 
 static enum status sum_chunk(const struct preconditioner *p, const struct body *body, int64_t begin,
@@ -34,17 +41,17 @@ static enum status sum_chunk(const struct preconditioner *p, const struct body *
     RETURN_IF_ERROR(block_row_begin(body, block_row_most(body), &row, error));
     RETURN_IF_ERROR(coarse_rows_begin(&p->coarse, &rows, error));
     for (int64_t n = begin; n < end; n++) {
-        add_node(body, (int32_t)n, &row, &rows, matrix);
+        add_node(body, (int32_t)n, &row, &rows, &p->profile, matrix);
     }
     return STATUS_OK;
 }
 
-/* (*sums)[chunks][size * size], lower triangles: of the process's own chunks, from first[] on. */
+/* (*sums)[chunks][profile.size]: of the process's own chunks, from first[] on. */
 static enum status sum_nodes(const struct preconditioner *p, const struct body *body, struct chunks *chunks,
                              int64_t **first, double **sums, struct error *error)
 {
     const struct ranks *ranks = body->share.ranks;
-    int64_t entries = p->size * p->size;
+    int64_t entries = p->profile.size;
     struct first_failure failure = {STATUS_OK};
     RETURN_IF_ERROR(NEW_ARRAY(sums, chunks->count * entries, error));
     RETURN_IF_ERROR(ranks_share(ranks, chunks->count, NULL, first, error));
@@ -67,7 +74,7 @@ static void add_springs(struct preconditioner *p, const struct constraint_rows *
         struct average average = constraint_rows_average(rows, r);
         coarse_rows_clear(&p->rows);
         coarse_rows_add_average(&p->rows, &average, 1.0, 1, rows->direction + r * p->dim);
-        coarse_rows_square(&p->rows, 0, stiffness != NULL ? stiffness[r] : usual, p->body);
+        coarse_rows_square(&p->rows, 0, stiffness != NULL ? stiffness[r] : usual, &p->profile, p->body);
     }
 }
 
@@ -76,18 +83,16 @@ enum status preconditioner_assemble(struct preconditioner *p, struct solid_syste
 {
     const struct ranks *ranks = system->body.share.ranks;
     struct chunks chunks = chunks_of(p->node_count, NODES_FOR_THREAD);
-    int64_t entries = p->size * p->size;
+    int64_t entries = p->profile.size;
     double mean = 0.0;
     SCRATCH int64_t *first = NULL;
     SCRATCH double *sums = NULL;
     chunks.count = chunks.count < MOST_SUMS ? chunks.count : MOST_SUMS;
     RETURN_IF_ERROR(ranks_agree(ranks, sum_nodes(p, &system->body, &chunks, &first, &sums, error), error));
     ranks_gather(ranks, sums, (size_t)entries * sizeof *sums, first);
-    for (int64_t i = 0; i < p->size; i++) {
-        memcpy(p->body + i * p->size, sums + i * p->size, (size_t)(i + 1) * sizeof *sums);
-        for (int64_t c = 1; c < chunks.count; c++) {
-            dense_add_row(i + 1, 1.0, sums + c * entries + i * p->size, p->body + i * p->size);
-        }
+    memcpy(p->body, sums, (size_t)entries * sizeof *sums);
+    for (int64_t c = 1; c < chunks.count; c++) {
+        dense_add_row(entries, 1.0, sums + c * entries, p->body);
     }
     for (int64_t n = 0; n < p->node_count; n++) {
         mean += p->stiffness[n] / (double)p->node_count;
@@ -95,4 +100,35 @@ enum status preconditioner_assemble(struct preconditioner *p, struct solid_syste
     add_springs(p, &system->penalties.rows, system->penalties.stiffness, 0.0);
     add_springs(p, &system->rows, NULL, mean);
     return STATUS_OK;
+}
+
+static void widen_by_rows(struct preconditioner *p, const struct constraint_rows *rows)
+{
+    for (int64_t r = 0; r < rows->count; r++) {
+        struct average average = constraint_rows_average(rows, r);
+        coarse_rows_clear(&p->rows);
+        coarse_rows_add_average(&p->rows, &average, 1.0, 1, rows->direction + r * p->dim);
+        coarse_rows_widen(&p->rows, &p->profile);
+    }
+}
+
+enum status preconditioner_lay_out(struct preconditioner *p, const struct solid_system *system,
+                                   struct error *error)
+{
+    const struct body *body = &system->body;
+    FREED_BY(block_row_free) struct block_row row = {0};
+    RETURN_IF_ERROR(profile_begin(p->coarse.group_count, (p->dim + 1) * p->dim, &p->profile, error));
+    if (body->smoothed && p->size > 0) {
+        RETURN_IF_ERROR(block_row_begin(body, block_row_most(body), &row, error));
+        for (int64_t n = 0; n < p->node_count; n++) {
+            take_node(body, (int32_t)n, &row, &p->rows);
+            coarse_rows_widen(&p->rows, &p->profile);
+        }
+        widen_by_rows(p, &system->penalties.rows);
+        widen_by_rows(p, &system->rows);
+        preconditioner_widen_by_contacts(p, system);
+    } else {
+        memset(p->profile.first, 0, (size_t)p->profile.count * sizeof *p->profile.first);
+    }
+    return profile_lay_out(&p->profile, error);
 }

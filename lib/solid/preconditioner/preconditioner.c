@@ -1,7 +1,6 @@
 #include "solid/preconditioner/preconditioner_private.h"
 
 #include "base/chunks.h"
-#include "base/dense.h"
 #include "base/memory.h"
 #include "base/processor.h"
 #include "base/vector.h"
@@ -15,8 +14,9 @@
 enum { NODES_ACROSS_GROUP = 4 };
 /* Unknowns at most where each costs an evaluation: 16 groups in two dimensions and 8 in three. */
 static const int64_t most_unknowns = 96;
-/* Groups at most where the stiffness is assembled: the matrices are dense, and more save no time. */
-static const int64_t most_groups = 128;
+/* Groups at most where the stiffness is assembled, by the number of nodes to this power: its factor costs
+ * some two evaluations then. */
+static const double most_groups_2d = 4.0, power_2d = 1.0 / 2.0, most_groups_3d = 3.6, power_3d = 3.0 / 7.0;
 
 static int64_t group_count(const struct solid_system *system)
 {
@@ -24,7 +24,11 @@ static int64_t group_count(const struct solid_system *system)
     int64_t nodes = system->dim == 2 ? NODES_ACROSS_GROUP * NODES_ACROSS_GROUP
                                      : NODES_ACROSS_GROUP * NODES_ACROSS_GROUP * NODES_ACROSS_GROUP;
     int64_t count = system->node_count / nodes;
-    most = system->body.smoothed ? most_groups : most;
+    if (system->body.smoothed) {
+        double all = (double)system->node_count;
+        most = (int64_t)(system->dim == 2 ? most_groups_2d * pow(all, power_2d)
+                                          : most_groups_3d * pow(all, power_3d));
+    }
     return count < most ? count : most;
 }
 
@@ -58,7 +62,6 @@ static enum status leave_out_held(const struct solid_system *system, struct coar
 enum status preconditioner_build(struct solid_system *system, bool coarse, struct preconditioner *p,
                                  struct error *error)
 {
-    int64_t cells;
     *p = (struct preconditioner){
         .dim = system->dim, .node_count = system->node_count, .has_rigid_mode = system->floats};
     RETURN_IF_ERROR(system_constrain(system, NULL, &p->constraint, error));
@@ -74,18 +77,17 @@ enum status preconditioner_build(struct solid_system *system, bool coarse, struc
                                        coarse ? group_count(system) : 0, &p->coarse, error));
     RETURN_IF_ERROR(leave_out_held(system, &p->coarse, error));
     p->size = p->coarse.count * p->dim;
-    cells = p->size * p->size;
+    RETURN_IF_ERROR(coarse_rows_begin(&p->coarse, &p->rows, error));
+    RETURN_IF_ERROR(preconditioner_lay_out(p, system, error));
     RETURN_IF_ERROR(NEW_ARRAY(&p->along, p->contact_node_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&p->normal, p->contact_node_count * p->dim, error));
     if (system_has_friction(system)) {
         RETURN_IF_ERROR(NEW_ARRAY(&p->across, p->contact_node_count, error));
     }
-    RETURN_IF_ERROR(NEW_ARRAY(&p->body, cells, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&p->weight, p->coarse.count * p->coarse.count, error));
-    RETURN_IF_ERROR(coarse_rows_begin(&p->coarse, &p->rows, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&p->stiffness_factor, cells, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&p->body, p->profile.size, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&p->stiffness_factor, p->profile.size, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&p->weight, p->coarse.count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&p->amount, p->size, error));
-    RETURN_IF_ERROR(p->contact_node_count > 0 ? NEW_ARRAY(&p->contacts, cells, error) : STATUS_OK);
     if (coarse && system_has_inverse(system)) {
         RETURN_IF_ERROR(build_inverse(system, p, error));
     }
@@ -98,29 +100,24 @@ void preconditioner_free(struct preconditioner *p)
     coarse_space_free(&p->coarse);
     inverse_factor_free(&p->factor);
     coarse_rows_free(&p->rows);
+    profile_free(&p->profile);
     FREE_ALL(p->vector, p->force, p->at_rest, p->rotation, p->stiffness, p->mass, p->body, p->along,
-             p->normal, p->across, p->weight, p->stiffness_factor, p->amount, p->contacts);
+             p->normal, p->across, p->weight, p->stiffness_factor, p->amount);
     *p = (struct preconditioner){0};
 }
 
-/* weight = Z^T D Z */
+/* weight: the diagonal of Z^T D Z */
 static void weigh_coarse_space(struct preconditioner *p)
 {
-    const struct coarse_space *coarse = &p->coarse;
-    const struct sparse *shares = &coarse->shares;
+    const struct sparse *shares = &p->coarse.shares;
     int64_t fields = p->dim + 1;
-    double one[4], other[4];
-    memset(p->weight, 0, (size_t)(coarse->count * coarse->count) * sizeof *p->weight);
+    double value[4];
+    memset(p->weight, 0, (size_t)p->coarse.count * sizeof *p->weight);
     for (int64_t n = 0; n < p->node_count && p->size > 0; n++) {
         for (int64_t i = shares->ptr[n]; i < shares->ptr[n + 1]; i++) {
-            coarse_space_values(coarse, n, shares->idx[i], shares->value[i], one);
-            for (int64_t k = shares->ptr[n]; k < shares->ptr[n + 1]; k++) {
-                double *to = p->weight + shares->idx[i] * fields * coarse->count + shares->idx[k] * fields;
-                coarse_space_values(coarse, n, shares->idx[k], shares->value[k], other);
-                for (int64_t m = 0; m < fields * fields; m++) {
-                    to[m / fields * coarse->count + m % fields] +=
-                        p->stiffness[n] * one[m / fields] * other[m % fields];
-                }
+            coarse_space_values(&p->coarse, n, shares->idx[i], shares->value[i], value);
+            for (int64_t m = 0; m < fields; m++) {
+                p->weight[shares->idx[i] * fields + m] += p->stiffness[n] * value[m] * value[m];
             }
         }
     }
@@ -188,7 +185,7 @@ void preconditioner_apply(struct preconditioner *p, const double *force, double 
     smooth(p, force, acceleration);
     if (p->uses_coarse) {
         coarse_space_restrict(&p->coarse, force, p->amount);
-        dense_solve(p->size, p->stiffness_factor, p->amount);
+        profile_solve(&p->profile, p->stiffness_factor, p->amount);
         coarse_space_prolongate(&p->coarse, p->amount, acceleration);
     }
     preconditioner_project(p, acceleration);
@@ -208,8 +205,8 @@ enum status preconditioner_state(struct preconditioner *p, const struct state *s
     const struct state_value values[] = {
         {"mass", STATE_NUMBERS, p->mass, p->node_count},
         {"stiffness", STATE_NUMBERS, p->stiffness, p->node_count},
-        {"weight", STATE_NUMBERS, p->weight, p->coarse.count * p->coarse.count},
-        {"body", STATE_NUMBERS, p->body, p->size * p->size},
+        {"weight", STATE_NUMBERS, p->weight, p->coarse.count},
+        {"body", STATE_NUMBERS, p->body, p->profile.size},
         {"rotation", STATE_NUMBERS, p->rotation, p->rotation != NULL ? p->node_count * p->dim * p->dim : 0},
         {"along", STATE_NUMBERS, p->along, p->contact_node_count},
         {"normal", STATE_NUMBERS, p->normal, p->contact_node_count * p->dim},

@@ -15,6 +15,7 @@
  */
 #pragma once
 
+#include "base/profile.h"
 #include "base/state.h"
 #include "solid/preconditioner/coarse_rows.h"
 #include "solid/preconditioner/inverse_stiffness.h"
@@ -32,11 +33,11 @@ struct preconditioner {
     struct constraint constraint; /* P */
     struct coarse_space coarse;   /* count 0: none, M = B^-1 */
     int64_t size;                 /* coarse.count * dim: rows and columns of the coarse matrices */
-    /* Lower triangles, size * size, N/m (2D: N/m2): stiffness along the coarse fields of body, penalties and
-     * conditions; of the contact nodes that A counts in (NULL without contacts); Cholesky factor of A. */
-    double *body, *contacts, *stiffness_factor;
-    /* coarse.count * coarse.count: Z^T D Z with D = `stiffness`, the same in each direction. */
-    double *weight;
+    /* The stiffness along the coarse fields of body, penalties and conditions, and the Cholesky factor of A,
+     * to which the contact nodes that A counts in add; N/m (2D: N/m2). */
+    struct profile profile; /* of blocks by groups */
+    double *body, *stiffness_factor;
+    double *weight; /* coarse.count: diagonal of Z^T D Z with D = `stiffness`, the same in each direction */
     bool has_rigid_mode; /* system->floats */
     int64_t contact_node_count;
     /* What A counts in at the contact nodes of all contacts: contact_node_count stiffnesses along the

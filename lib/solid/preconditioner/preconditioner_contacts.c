@@ -33,6 +33,27 @@ static void take_fields(const struct contact *contact, int64_t a, const double *
     }
 }
 
+void preconditioner_widen_by_contacts(struct preconditioner *p, const struct solid_system *system)
+{
+    static const double any[3] = {1.0};
+    for (int64_t c = 0; c < system->contact_count; c++) {
+        const struct contact_between *between = system->contacts[c].between;
+        const struct boundary_averages *nodes = contact_nodes(&system->contacts[c]);
+        const struct boundary_averages *opposite = between != NULL ? &between->opposite.rows : NULL;
+        coarse_rows_clear(&p->rows);
+        for (int64_t i = 0; i < nodes->count + (opposite != NULL ? opposite->count : 0); i++) {
+            struct average average = i < nodes->count ? average_of_boundary(nodes, i)
+                                                      : average_of_boundary(opposite, i - nodes->count);
+            coarse_rows_add_average(&p->rows, &average, 1.0, 1, any);
+            if (opposite == NULL) {
+                coarse_rows_widen(&p->rows, &p->profile);
+                coarse_rows_clear(&p->rows);
+            }
+        }
+        coarse_rows_widen(&p->rows, &p->profile);
+    }
+}
+
 void preconditioner_add_contacts(struct preconditioner *p, const struct solid_system *system, double *matrix)
 {
     int64_t at = 0;
@@ -44,9 +65,9 @@ void preconditioner_add_contacts(struct preconditioner *p, const struct solid_sy
                 continue;
             }
             take_fields(contact, a, p->normal + at * p->dim, &p->rows);
-            coarse_rows_square(&p->rows, 0, along, matrix);
+            coarse_rows_square(&p->rows, 0, along, &p->profile, matrix);
             for (int i = 1; i <= p->dim && across > 0.0; i++) {
-                coarse_rows_square(&p->rows, i, across, matrix);
+                coarse_rows_square(&p->rows, i, across, &p->profile, matrix);
             }
         }
     }

@@ -3,10 +3,16 @@
 
 #include "solid/preconditioner/preconditioner.h"
 
-/* The lower triangle of matrix[size * size] += the stiffness along the coarse fields of the contact nodes
- * that A counts in. */
+/* matrix += the stiffness along the coarse fields of the contact nodes that A counts in; and the profile is
+ * widened to hold it wherever points touch. */
 void preconditioner_add_contacts(struct preconditioner *preconditioner, const struct solid_system *system,
                                  double *matrix);
+void preconditioner_widen_by_contacts(struct preconditioner *preconditioner,
+                                      const struct solid_system *system);
+
+/* Lay out the profile of the stiffness along the coarse fields. */
+MUST_CHECK enum status preconditioner_lay_out(struct preconditioner *preconditioner,
+                                              const struct solid_system *system, struct error *error);
 
 /* Set the stiffness of body, penalties and conditions along the coarse fields, as it is at the last
  * evaluation of a body of smoothed cells. */

@@ -1,8 +1,6 @@
 /* The stiffness of the coarse space: that of the body, by differences; and its factor. */
 #include "solid/preconditioner/preconditioner_private.h"
 
-#include "base/chunks.h"
-#include "base/dense.h"
 #include "base/memory.h"
 #include "base/round_off.h"
 
@@ -13,43 +11,41 @@
  */
 static const double kept = 1e-6;
 enum { MOST_ATTEMPTS = 12 }; /* with ten times as much each time, until the stiffness is positive definite */
-enum { ENTRIES_FOR_THREAD = 50000 }; /* see chunks_of */
 
-static int threads_for(int64_t size)
+/* The values of A: body + contacts + keep weight. */
+static void sum_stiffness(struct preconditioner *p, const struct solid_system *system, double keep)
 {
-    return chunks_of(size * size, ENTRIES_FOR_THREAD).threads;
-}
-
-/* The lower triangle of matrix = body + contacts + keep weight. */
-static void sum_stiffness(const struct preconditioner *p, double keep, double *matrix)
-{
-    int64_t size = p->size, dim = p->dim;
-#pragma omp parallel for schedule(static, 16) num_threads(threads_for(size))
-    for (int64_t i = 0; i < size; i++) {
-        for (int64_t k = i * size; k <= i * size + i; k++) {
-            matrix[k] = p->body[k] + (p->contacts != NULL ? p->contacts[k] : 0.0);
-        }
-        for (int64_t k = i % dim; k <= i; k += dim) {
-            matrix[i * size + k] += keep * p->weight[i / dim * p->coarse.count + k / dim];
-        }
+    const struct profile *profile = &p->profile;
+    memcpy(p->stiffness_factor, p->body, (size_t)profile->size * sizeof *p->body);
+    for (int64_t k = 0; k < p->size; k++) {
+        int64_t g = k / profile->numbers, i = k % profile->numbers;
+        double *diagonal = profile_block(profile, g, g, p->stiffness_factor);
+        diagonal[i * profile_stride(profile, g) + i] += keep * p->weight[k / p->dim];
     }
+    preconditioner_add_contacts(p, system, p->stiffness_factor);
 }
 
 void preconditioner_factorise(struct preconditioner *p, const struct solid_system *system)
 {
     double keep = kept;
     p->measured = false;
-    if (p->contacts != NULL && p->size > 0) {
-        memset(p->contacts, 0, (size_t)(p->size * p->size) * sizeof *p->contacts);
-        preconditioner_add_contacts(p, system, p->contacts);
-    }
     p->uses_coarse = false;
     /* Of an unstable body the stiffness is indefinite. */
     for (int attempt = 0; attempt < MOST_ATTEMPTS && p->size > 0 && !p->uses_coarse; attempt++) {
-        sum_stiffness(p, keep, p->stiffness_factor);
-        p->uses_coarse = dense_factorise(p->size, p->stiffness_factor);
+        sum_stiffness(p, system, keep);
+        p->uses_coarse = profile_factorise(&p->profile, p->stiffness_factor);
         keep *= 10.0;
     }
+}
+
+/* Row k of the stiffness of the body, up to the diagonal. */
+static void store_row(struct preconditioner *p, int64_t k, const double *row)
+{
+    const struct profile *profile = &p->profile;
+    int64_t g = k / profile->numbers, first = profile->first[g] * profile->numbers;
+    double *to = profile_block(profile, g, profile->first[g], p->body) +
+                 k % profile->numbers * profile_stride(profile, g);
+    memcpy(to, row + first, (size_t)(k + 1 - first) * sizeof *row);
 }
 
 /* The stiffness of the body, by the change of its forces at u along each field; u is evaluated last. */
@@ -76,7 +72,8 @@ static enum status measure_by_differences(struct preconditioner *p, struct solid
             force[i] = (force[i] - at_u[i]) / epsilon;
         }
         preconditioner_project(p, force);
-        coarse_space_restrict(&p->coarse, force, p->body + k * p->size);
+        coarse_space_restrict(&p->coarse, force, one);
+        store_row(p, k, one);
     }
     system_resist(system, u, at_u);
     return STATUS_OK;
