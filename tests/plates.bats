@@ -45,6 +45,23 @@ reaction() { rows reactions u.dat | awk -v row="$1" -v column="$2" 'NR == row { 
     rows energy u.dat | awk '{ e = $7 < 0 ? -$7 : $7; if (NR > 20 && e > most) most = e; work = $5 } END { print most, work; exit !(most < 1e-3 && work > 0.05) }'
 }
 
+@test "tools thinner than the way of an increment do not pass the body, whichever moves, nor does a blunt one sink in" {
+    printf -- '-1 0.1\n2 0.1\n2 0.102\n-1 0.102\n-1 0.1\n' > plate.tsv
+    printf '0.046 0.1\n0.054 0.1\n0.054 0.2\n0.046 0.2\n0.046 0.1\n' > punch.tsv
+    for tool in lid plate punch; do
+        { held quasi-static && lid 'translation = 0, -0.02' 'curve = linear' | sed "s/lid.tsv/$tool.tsv/" && output; } > down.scene
+        mtled -q down.scene block.mts > u.dat
+        reaction 2 2 > $tool.down
+        sed 's/^gaps = yes/&\nframes = 20/' down.scene > slow.scene
+        mtled -q slow.scene block.mts > u.dat
+        awk -v a="$(cat $tool.down)" -v b="$(reaction 2 2)" 'BEGIN { d = a / b - 1; print a, b; exit !(a < -1 && d < 1e-3 && -d < 1e-3) }'
+        { held quasi-static | sed 's/^components = 0, 0/components = 0, 0.02/' && lid | sed "s/lid.tsv/$tool.tsv/" && output; } > up.scene
+        mtled -q up.scene block.mts > u.dat
+        awk -v a="$(cat $tool.down)" -v b="$(reaction 2 2)" 'BEGIN { d = a / b - 1; print a, b; exit !(d < 1e-3 && -d < 1e-3) }'
+    done
+    awk -v a="$(cat lid.down)" -v b="$(cat plate.down)" 'BEGIN { d = a / b - 1; print a, b; exit !(d < 1e-5 && -d < 1e-5) }'
+}
+
 @test "a lid in 3D, turned about an axis in its plane; the same in other threads" {
     cloud -d 3 -k regular -n 4 --box 0,0.1,0,0.1,0,0.1 | shapefn > cube.mts 2> note
     printf -- '-1 -1 0.1 1 1 0.1 1 -1 0.1\n-1 -1 0.1 -1 1 0.1 1 1 0.1\n' > lid.tsv

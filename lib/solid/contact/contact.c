@@ -16,6 +16,8 @@ static const double round_off = 1e-6;
 static const double by_largest = 15.0, by_square = 3.0;
 /* By the shear modulus: beyond, no surface bears the multiplier; it grows where no pressure closes a gap. */
 static const double most_pressure = 1000.0;
+/* Facets whose normals are this close to being across that at a point, by the cosine. */
+static const double across = 0.25;
 enum { POINTS_FOR_THREAD = 1000 }; /* see chunks_of */
 
 /* A quadrature point has an equal share of the area of its facet. */
@@ -234,10 +236,52 @@ void contact_press_point(struct contact *contact, int64_t p, double gap, bool pr
     }
 }
 
+/* The side from which a point came: its place and the normal at the last step, and its place now. */
+struct side {
+    const struct rigid_surface *surface;
+    const double *before, *normal, *now;
+    double round_off;
+};
+
+/* How far x is in front of the plane of facet f, m. */
+static double height_above(const struct rigid_surface *surface, int64_t f, const double *x)
+{
+    double away[3];
+    int dim = surface->dim;
+    vector_subtract(dim, x, surface->vertex + (int64_t)surface->facet[f * dim] * dim, away);
+    return vector_dot(dim, away, surface->normal + f * dim);
+}
+
+/* Whether the point may press on facet f. A tool that is thinner than the point's way has facets on its far
+ * side, which would let the point out: they face away from the side of the last step, and the point was
+ * behind them. Facets across it are left out while the point stays behind them. */
+static bool may_press(void *context, int64_t f)
+{
+    const struct side *side = context;
+    const struct rigid_surface *surface = side->surface;
+    double cosine = vector_dot(surface->dim, surface->normal + f * surface->dim, side->normal);
+    return cosine >= across || height_above(surface, f, side->before) >= -side->round_off ||
+           (cosine > -across && height_above(surface, f, side->now) >= 0.0);
+}
+
+static bool admits_any(void *context, int64_t f, const double *away)
+{
+    (void)context;
+    (void)f;
+    (void)away;
+    return true;
+}
+
 /* Search for the surface at point p. */
 static void search(struct contact *contact, int64_t p, struct contact_view *view)
 {
-    struct rigid_contact closest = rigid_closest(&contact->surface, view->sought, INFINITY);
+    int dim = contact->dim;
+    struct side side = {&contact->surface, contact->checked_x + p * dim, contact->checked_normal + p * dim,
+                        view->sought, contact_round_off(contact, p)};
+    struct rigid_filter filter = {may_press, admits_any, &side};
+    bool known = vector_dot(dim, side.normal, side.normal) > 0.5;
+    struct rigid_contact closest =
+        rigid_closest_among(&contact->surface, view->sought, INFINITY, known ? &filter : NULL);
     bool was_inside = contact->checked_distance[p] < 0.0 && !contact->behind[p];
     double gap = closest.found ? closest.gap : INFINITY;
     view->searched = true;

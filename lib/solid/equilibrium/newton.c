@@ -7,8 +7,8 @@
 #include <math.h>
 #include <string.h>
 
-/* An increment prescribes a motion of this many spacings. */
-static const double prescribed_spacings = 1.4;
+/* An increment prescribes a motion of this many spacings, of this part of the narrowest rigid surface. */
+static const double prescribed_spacings = 1.4, prescribed_widths = 0.25;
 /* By the body's size: a step moves no node by more than this. */
 static const double most_of_size = 0.1;
 /* The estimated error at which the load grows on, and after an increment whose model had no minimum. */
@@ -166,8 +166,9 @@ enum status newton_run(struct solid_system *system, const struct statics_options
     n.scale.spacing = system_node_spacing(system);
     n.scale.body = box_diagonal(&box);
     n.scale.round_off = statics_round_off(system);
-    n.load.most =
-        1.0 / fmax(1.0, ceil(system_longest_change(system) / (prescribed_spacings * n.scale.spacing)));
+    double most =
+        fmin(prescribed_spacings * n.scale.spacing, prescribed_widths * system_narrowest_tool(system));
+    n.load.most = 1.0 / fmax(1.0, ceil(system_longest_change(system) / most));
     n.scale.longest_step = most_of_size * n.scale.body;
     RETURN_IF_ERROR(options->restored != NULL ? resume(&n, error) : begin(&n, error));
     report->outcome = iterate(&n, error);

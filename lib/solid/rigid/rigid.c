@@ -3,9 +3,11 @@
 
 #include "approx/cells/cells.h"
 #include "base/box.h"
+#include "base/eigen.h"
 #include "base/lists.h"
 #include "base/memory.h"
 #include "base/round_off.h"
+#include "base/vector.h"
 #include "solid/rigid/rigid_private.h"
 
 #include <math.h>
@@ -121,6 +123,25 @@ enum status rigid_build(int dim, int64_t facet_count, const double *corners, boo
     RETURN_IF_ERROR(make_normals(surface, flip, error));
     RETURN_IF_ERROR(rigid_make_pseudo_normals(surface, error));
     return rigid_grow_tree(surface, error);
+}
+
+double rigid_width(const struct rigid_surface *surface)
+{
+    double middle[3] = {0.0}, spread[9] = {0.0}, value[3], V[9];
+    int dim = surface->dim;
+    for (int64_t i = 0; i < surface->vertex_count * dim; i++) {
+        middle[i % dim] += surface->vertex[i] / (double)surface->vertex_count;
+    }
+    for (int64_t v = 0; v < surface->vertex_count; v++) {
+        double off[3];
+        vector_subtract(dim, surface->vertex + v * dim, middle, off);
+        for (int i = 0; i < dim * dim; i++) {
+            spread[i] += off[i / dim] * off[i % dim] / (double)surface->vertex_count;
+        }
+    }
+    eigen_symmetric(dim, spread, value, V);
+    qsort(value, (size_t)dim, sizeof *value, compare_double);
+    return 2.0 * sqrt(2.0 * fmax(0.0, value[1]));
 }
 
 void rigid_free(struct rigid_surface *surface)

@@ -39,6 +39,9 @@ MUST_CHECK enum status rigid_build(int dim, int64_t facet_count, const double *c
                                    struct rigid_surface *surface, struct error *error);
 void rigid_free(struct rigid_surface *surface);
 
+/* About its width, across its length and, in 3D, not the least: how far its vertices spread, m. */
+double rigid_width(const struct rigid_surface *surface);
+
 /* The closest point of the surface within `reach` (INFINITY: wherever it is). */
 struct rigid_contact {
     bool found;       /* false: nothing within reach, or x lies beyond an open rim, where the surface ends */

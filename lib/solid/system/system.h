@@ -188,6 +188,9 @@ void system_measure_contacts(struct solid_system *system, const double *u, bool 
 /* The largest displacement that a condition or a moving rigid surface prescribes, at factor 1, m. */
 double system_longest_way(const struct solid_system *system);
 
+/* The width of the narrowest rigid surface, m; INFINITY without any. */
+double system_narrowest_tool(const struct solid_system *system);
+
 /* The largest prescribed change during a run, m: after system_start, from the values of the start to the
  * targets. */
 double system_longest_change(const struct solid_system *system);

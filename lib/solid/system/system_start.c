@@ -42,6 +42,17 @@ enum status system_start(struct solid_system *system, const double *u, struct er
     return STATUS_OK;
 }
 
+double system_narrowest_tool(const struct solid_system *system)
+{
+    double narrowest = INFINITY;
+    for (int64_t c = 0; c < system->contact_count; c++) {
+        if (system->contacts[c].between == NULL) {
+            narrowest = fmin(narrowest, rigid_width(&system->contacts[c].surface));
+        }
+    }
+    return narrowest;
+}
+
 double system_longest_change(const struct solid_system *system)
 {
     const struct constraint_rows *rows = &system->rows;
