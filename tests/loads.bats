@@ -50,6 +50,13 @@ near() { fieldcmp "--tol-$1" "$2" other.dat u.dat > /dev/null; }
     holds 0 98.1
 }
 
+@test "in time a body comes to rest under its weight as it does in a static scene" {
+    { block quasi-static 'gravity = 0, -9.81' && held_below; } > held.scene
+    solved && cp u.dat other.dat
+    { block dynamic 'gravity = 0, -9.81' && held_below; printf '[solver]\nend_time = 2\ndamping = 20\n'; } > held.scene
+    solved && near max 1e-7 # of 10 mm
+}
+
 @test "groups of one section that overlap: a pressure, a traction, a contact acts once on each facet" {
     stream=capped.mts
     nodes -u mm body.msh 2> note | tag -f cap=ymax 2> note > capped.mts

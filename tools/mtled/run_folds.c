@@ -220,8 +220,10 @@ static const double most_inelliptic = 0.1;
 /* text = when a state is given: "t = 0.1 s", "0.5 of the load" or "the whole load". */
 static const char *when_text(const struct run *run, double time, char text[48])
 {
-    bool dynamic = run->scene->analysis == SCENE_DYNAMIC;
-    snprintf(text, 48, dynamic ? "t = %.4g s" : time < 1.0 ? "%.4g of the load" : "the whole load", time);
+    double duration = run->scene->duration;
+    bool in_time = run->scene->analysis == SCENE_DYNAMIC || duration > 0.0;
+    snprintf(text, 48, in_time ? "t = %.4g s" : time < 1.0 ? "%.4g of the load" : "the whole load",
+             duration > 0.0 ? time * duration : time);
     return text;
 }
 

@@ -44,7 +44,9 @@ static void judge_statics(struct run *run, const struct statics_report *report)
         run_contacts_penetrate(run, report->move, 0.0, false); /* as where nothing can give way */
     }
     if (report->load < 1.0) {
-        snprintf(load, sizeof load, " (at %.3g of the load)", report->load);
+        bool in_time = scene->duration > 0.0;
+        snprintf(load, sizeof load, in_time ? " (at t = %.3g s)" : " (at %.3g of the load)",
+                 in_time ? report->load * scene->duration : report->load);
     }
     snprintf(run->at, sizeof run->at, "step %jd%s: ", report->steps, load);
     const char *place = POINT_TEXT(scene->dim, run->model->system.X + report->worst_node * scene->dim);

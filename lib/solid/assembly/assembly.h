@@ -105,7 +105,7 @@ struct assembly {
     const struct membrane_condition *membranes;
     int64_t membrane_count;
     double tolerance; /* of the displacement: what springs of measured points need not resolve */
-    bool in_time;     /* for dynamics: gravity by the lumped mass */
+    bool in_time;     /* for dynamics */
 
     /* Set by assembly_complete. */
     struct faces boundary; /* the faces on the boundary */

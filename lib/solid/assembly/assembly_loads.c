@@ -62,12 +62,8 @@ static enum status add_gravity(const struct assembly *input, struct solid_system
     const struct material_list *materials = &input->materials;
     double *force;
     RETURN_IF_ERROR(new_load(system, input->gravity_curve, &force, error));
-    /* In dynamics gravity acts on the lumped mass, so that a free body falls without deformation. */
-    for (int64_t i = 0; input->in_time && i < system->node_count * system->dim; i++) {
-        force[i] = system->lumped_mass[i / system->dim] * input->gravity[i % system->dim];
-    }
-    if (input->in_time || input->smoothed) {
-        return input->in_time ? STATUS_OK : add_cells(input, &system->body, force, error);
+    if (input->smoothed) {
+        return add_cells(input, &system->body, force, error);
     }
     for (int64_t q = 0; q < input->point_count; q++) {
         double density = materials->items[materials->of_cell[input->point_cell[q]]].density;
