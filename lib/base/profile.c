@@ -45,9 +45,8 @@ struct row {
 
 static struct row row_of(const struct profile *profile, int64_t i, double *value)
 {
-    int64_t row = i / profile->numbers;
-    return (struct row){profile->first[row] * profile->numbers,
-                        value + profile->at[row] + i % profile->numbers * profile_stride(profile, row)};
+    int64_t first = profile->first[i / profile->numbers] * profile->numbers;
+    return (struct row){first, profile_entry(profile, i, first, value)};
 }
 
 static int64_t larger(int64_t a, int64_t b)

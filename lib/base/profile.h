@@ -35,6 +35,14 @@ static inline double *profile_block(const struct profile *profile, int64_t row, 
     return value + profile->at[row] + (column - profile->first[row]) * profile->numbers;
 }
 
+/* The entry of row i and column j of the matrix, first[] of its row of blocks <= j / numbers, j <= i. */
+static inline double *profile_entry(const struct profile *profile, int64_t i, int64_t j, double *value)
+{
+    int64_t row = i / profile->numbers;
+    return profile_block(profile, row, profile->first[row], value) +
+           i % profile->numbers * profile_stride(profile, row) + j - profile->first[row] * profile->numbers;
+}
+
 /* A = L L^T: the lower triangle of A in value[size] becomes L. Returns false when A is not positive definite;
  * the values are then undefined. Threaded; each entry is summed in the order of the columns. */
 bool profile_factorise(const struct profile *profile, double *value);

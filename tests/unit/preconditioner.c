@@ -187,11 +187,9 @@ static double *assembled(const struct strained *s)
     const struct preconditioner *p = &s->preconditioner;
     double *body = zeros(p->size * p->size, sizeof *body);
     for (int64_t i = 0; i < p->size * p->size; i++) {
-        int64_t numbers = p->profile.numbers, row = i / p->size, column = i % p->size, g = row / numbers;
-        if (column <= row && column / numbers >= p->profile.first[g]) {
-            body[i] =
-                profile_block(&p->profile, g, column / numbers,
-                              p->body)[row % numbers * profile_stride(&p->profile, g) + column % numbers];
+        int64_t row = i / p->size, column = i % p->size, numbers = p->profile.numbers;
+        if (column <= row && column / numbers >= p->profile.first[row / numbers]) {
+            body[i] = *profile_entry(&p->profile, row, column, p->body);
         }
     }
     return body;

@@ -15,12 +15,9 @@ enum { MOST_ATTEMPTS = 12 }; /* with ten times as much each time, until the stif
 /* The values of A: body + contacts + keep weight. */
 static void sum_stiffness(struct preconditioner *p, const struct solid_system *system, double keep)
 {
-    const struct profile *profile = &p->profile;
-    memcpy(p->stiffness_factor, p->body, (size_t)profile->size * sizeof *p->body);
+    memcpy(p->stiffness_factor, p->body, (size_t)p->profile.size * sizeof *p->body);
     for (int64_t k = 0; k < p->size; k++) {
-        int64_t g = k / profile->numbers, i = k % profile->numbers;
-        double *diagonal = profile_block(profile, g, g, p->stiffness_factor);
-        diagonal[i * profile_stride(profile, g) + i] += keep * p->weight[k / p->dim];
+        *profile_entry(&p->profile, k, k, p->stiffness_factor) += keep * p->weight[k / p->dim];
     }
     preconditioner_add_contacts(p, system, p->stiffness_factor);
 }
@@ -36,16 +33,6 @@ void preconditioner_factorise(struct preconditioner *p, const struct solid_syste
         p->uses_coarse = profile_factorise(&p->profile, p->stiffness_factor);
         keep *= 10.0;
     }
-}
-
-/* Row k of the stiffness of the body, up to the diagonal. */
-static void store_row(struct preconditioner *p, int64_t k, const double *row)
-{
-    const struct profile *profile = &p->profile;
-    int64_t g = k / profile->numbers, first = profile->first[g] * profile->numbers;
-    double *to = profile_block(profile, g, profile->first[g], p->body) +
-                 k % profile->numbers * profile_stride(profile, g);
-    memcpy(to, row + first, (size_t)(k + 1 - first) * sizeof *row);
 }
 
 /* The stiffness of the body, by the change of its forces at u along each field; u is evaluated last. */
@@ -73,7 +60,7 @@ static enum status measure_by_differences(struct preconditioner *p, struct solid
         }
         preconditioner_project(p, force);
         coarse_space_restrict(&p->coarse, force, one);
-        store_row(p, k, one);
+        memcpy(profile_entry(&p->profile, k, 0, p->body), one, (size_t)(k + 1) * sizeof *one);
     }
     system_resist(system, u, at_u);
     return STATUS_OK;
