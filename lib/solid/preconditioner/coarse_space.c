@@ -1,6 +1,7 @@
 #include "solid/preconditioner/coarse_space.h"
 
 #include "approx/cells/cells.h"
+#include "base/box.h"
 #include "base/chunks.h"
 #include "base/lists.h"
 #include "base/memory.h"
@@ -116,20 +117,14 @@ static enum status place_centres(const struct coarse_space *coarse, const struct
 static enum status sort_groups(struct coarse_space *coarse, struct node_groups *groups, struct error *error)
 {
     int dim = coarse->dim, axis = 0;
-    double spread[3] = {0.0};
     NEW_SCRATCH(double, centre, groups->count * dim, error);
     NEW_SCRATCH(struct placed, placed, groups->count, error);
     NEW_SCRATCH(int32_t, number, groups->count, error);
     RETURN_IF_ERROR(NEW_ARRAY(&coarse->centre, groups->count * dim, error));
     RETURN_IF_ERROR(place_centres(coarse, groups, centre, error));
-    for (int a = 0; a < dim; a++) {
-        double least = INFINITY, most = -INFINITY;
-        for (int64_t c = 0; c < groups->count; c++) {
-            least = fmin(least, centre[c * dim + a]);
-            most = fmax(most, centre[c * dim + a]);
-        }
-        spread[a] = most - least;
-        axis = spread[a] > spread[axis] ? a : axis;
+    struct box box = box_of(dim, groups->count, centre);
+    for (int a = 1; a < dim; a++) {
+        axis = box.high[a] - box.low[a] > box.high[axis] - box.low[axis] ? a : axis;
     }
     for (int64_t c = 0; c < groups->count; c++) {
         placed[c] = (struct placed){centre[c * dim + axis], c};
