@@ -115,6 +115,16 @@ timed() {
 }
 brain='model = ogden\nmu = 842\nalpha = -4.7\nkappa = 8.42e7\nprony = .45 .5, .365 50'
 
+@test "a cube that creeps under a dead pressure past its loss of stability is told" {
+    cloud -d 3 -k regular -n 3 --box 0,1,0,1,0,1 | shapefn > unit.mts 2> note
+    for force in 200 400; do
+        timed 100 50 'model = ogden\nmu = 670\nalpha = -19\nkappa = 148000\nprony = .45 .5, .365 50' \
+            "[traction w]\nfacets = xmax\ncomponents = -$force, 0, 0\ncurve = step" > creep.scene
+        mtled creep.scene unit.mts 2>> said > creep.dat
+    done
+    [ "$(grep -c "at t = [4-8][0-9]* s the body leaves a state near equilibrium" said)" = 1 ]
+}
+
 @test "prony: of a body that moves rigidly no error of steps of time is noted: its stress is one of round-off" {
     cloud -d 2 -k jittered -n 7 --jitter .12 --seed 1 --box 0,.1,0,.1 2> note | shapefn > square.mts 2>> note
     { block quasi-static | sed 's/^analysis.*/&\nduration = 10/; s/^nu.*/&\nprony = .5 2/'

@@ -14,8 +14,7 @@ static const double short_span = 1.0 / 64.0;
 /* Whether the path is followed until the body leaves it. */
 static bool follows(const struct newton *n)
 {
-    return n->system->contact_count == 0 && n->system->rows.start == NULL && !n->options->in_time &&
-           !n->system->stability.left;
+    return n->system->contact_count == 0 && n->system->rows.start == NULL && !n->system->stability.left;
 }
 
 void newton_begin_path(struct newton *n, double from)
@@ -65,7 +64,7 @@ void newton_keep_to_path(struct newton *n)
     if (!(newton_longest(n, n->cg.scaled, &node) > n->path.reach)) {
         return;
     }
-    if (n->load.last > short_span && !n->path.returned) {
+    if (n->load.last > short_span && !n->path.returned && !n->options->in_time) {
         go_back(n);
     } else {
         newton_leave_path(n, node);
