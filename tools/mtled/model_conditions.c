@@ -1,12 +1,16 @@
 /* Displacements, loads, supports and contacts of a scene, as input of assembly. */
 #include "mtled/model.h"
 
+#include "base/box.h"
 #include "base/vector.h"
 #include "io/files/surface.h"
 #include "io/files/table.h"
 
 #include <math.h>
 #include <string.h>
+
+/* A group is smaller than another by its size, and far coarser by the width of its facets. */
+static const double smaller = 0.9, coarser = 2.0;
 
 enum status model_add_curve(struct model *model, const struct scene_label *label,
                             const struct scene_curve *curve, int32_t *index, struct error *error)
@@ -83,18 +87,37 @@ static enum status add_load(struct model *model, const struct scene_load *sectio
     return model_add_curve(model, &section->label, &section->curve, &load->curve, error);
 }
 
-/* Mean width of a list's facets, m. */
-static double mean_width(const struct model *model, const struct facet_set *set)
+/* The diagonal of the box around some facets, and their mean width, m. */
+struct extent {
+    double size, width;
+};
+
+static struct extent extent_of(const struct model *model, const struct facet_set *set)
 {
     const struct cells *cells = &model->assembly.cells;
-    double sum = 0.0;
+    struct box box = box_of_nodes(cells->dim, cells->x, set->facet, set->count * cells->dim);
+    struct extent extent = {box_diagonal(&box), 0.0};
     for (int64_t f = 0; f < set->count; f++) {
         double area[3];
         face_area_vector(cells->dim, cells->x, set->facet + f * cells->dim, area);
         double size = vector_length(cells->dim, area);
-        sum += cells->dim == 2 ? size : sqrt(size);
+        extent.width += (cells->dim == 2 ? size : sqrt(size)) / (double)set->count;
     }
-    return sum / (double)set->count;
+    return extent;
+}
+
+/* Whether the points of the first group press on the other, not the reverse: they do if it is smaller, as its
+ * edges stand on the inside of the other one, unless its facets are far coarser; of equal groups if it is
+ * finer. */
+static bool has_points(struct extent first, struct extent other)
+{
+    if (first.size < smaller * other.size) {
+        return first.width < coarser * other.width;
+    }
+    if (other.size < smaller * first.size) {
+        return !(other.width < coarser * first.width);
+    }
+    return first.width <= other.width;
 }
 
 /* The facets of the body that may touch each other by a section. */
@@ -126,11 +149,10 @@ static enum status add_between(struct model *model, const struct scene_contact *
     if (common > 0) {
         lists[1] = lists[0];
     }
-    /* The points of the finer facets press on the others. */
-    bool finer = common > 0 || mean_width(model, &lists[0]) <= mean_width(model, &lists[1]);
-    contact->facets = lists[finer ? 0 : 1];
-    contact->opposite = lists[finer ? 1 : 0];
-    contact->sign = finer ? 1 : -1;
+    bool first = common > 0 || has_points(extent_of(model, &lists[0]), extent_of(model, &lists[1]));
+    contact->facets = lists[first ? 0 : 1];
+    contact->opposite = lists[first ? 1 : 0];
+    contact->sign = first ? 1 : -1;
     contact->whole = model_is_whole(&section->facets) && model_is_whole(&section->against);
     return STATUS_OK;
 }
