@@ -150,3 +150,15 @@ square() {
     [ -s map2.mts ]
     run -3 --separate-stderr fieldcmp -m missing/map.mts a.txt b.txt
 }
+
+@test "bodies that slide along each other, on two meshes: each node is compared on its own side" {
+    for h in 2 3; do
+        printf 'SetFactory("OpenCASCADE");\nRectangle(1) = {0, 0, 0, 10, 10};\nRectangle(2) = {10, 0, 0, 10, 10};\nMeshSize {:} = %s;\n' $h > two.geo
+        printf 'Physical Surface("%s") = {%s};\nPhysical Curve("%s") = {%s};\n' one 1 left 4 other 2 right 6 >> two.geo
+        gmsh -v 1 -2 two.geo -o two.msh > /dev/null
+        { block quasi-static | sed 's/^region = .*/region = one, other/'
+            printf '[displacement %s]\nfacets = %s\ncomponents = 0, %s\n' a left 0 b right 0.001; } > two.scene
+        nodes -u mm two.msh | shapefn 2> note | mtled -q two.scene > $h.dat 2> note
+    done
+    run -0 --separate-stderr fieldcmp --tol-max 1e-8 2.dat 3.dat
+}

@@ -13,7 +13,8 @@ static const char usage[] =
     "and shapefn. With -p the points are those of another file.\n"
     "\n"
     "Of results of mtled, u and u.frame.K are the solver's own field: its parameters and supports are\n"
-    "in the stream, and at the nodes it is what u says. Options that choose other supports or shape\n"
+    "in the stream, and at the nodes it is what u says; on a slit the mean of both sides. Options that\n"
+    "choose other supports or shape\n"
     "functions ask for a fit instead, as do other fields: their values are taken as the parameters,\n"
     "u_h = sum phi_j u_j, moving least squares that reproduce linear fields (quadratic ones with mls2,\n"
     "and nearly so with mmls2) and smooth others. A point farther from the cells than the spacing of\n"
@@ -166,7 +167,7 @@ static enum status make_table(const struct tool *tool, const struct field_shapes
     if (file != NULL) {
         RETURN_IF_ERROR(drop_outside(tool, &cells, spacing, skip, file, points, error));
     }
-    return field_table_build(known->supports.radius != NULL ? known : &fit, &cells, points->at.count,
+    return field_table_build(known->supports.radius != NULL ? known : &fit, &cells, NULL, points->at.count,
                              points->at.x, file != NULL ? file : "points.x", &points->table, error);
 }
 

@@ -137,7 +137,7 @@ static enum status find_field(struct point_section *p, struct error *error)
     if (recorded.supports.radius == NULL) {
         return fail(error, STATUS_INPUT, "no section support.radius: run support");
     }
-    RETURN_IF_ERROR(field_table_build(&recorded, cells, measured->count, measured->x,
+    RETURN_IF_ERROR(field_table_build(&recorded, cells, NULL, measured->count, measured->x,
                                       p->section->condition.table, &field, error));
     p->condition->field =
         (struct neighbours){.count = field.lists.count, .ptr = field.lists.ptr, .idx = field.lists.idx};

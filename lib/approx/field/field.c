@@ -83,15 +83,16 @@ enum status field_table_at(const struct field_shapes *shapes, const struct visib
                        table->phi, table->dphi, error);
 }
 
-enum status field_table_build(const struct field_shapes *shapes, const struct cells *cells, int64_t count,
-                              const double *x, const char *what, struct field_table *table,
-                              struct error *error)
+enum status field_table_build(const struct field_shapes *shapes, const struct cells *cells,
+                              const int32_t *cell, int64_t count, const double *x, const char *what,
+                              struct field_table *table, struct error *error)
 {
+    struct visibility_places places = {.cell = cell, .points_per_row = 1};
     FREED_BY(visibility_free) struct visibility space = {0};
     *table = (struct field_table){0};
     RETURN_IF_ERROR(visibility_build(cells, shapes->supports, shapes->support.visibility,
                                      shapes->support.side, &space, error));
-    return field_table_at(shapes, &space, NULL, count, x, what, false, table, error);
+    return field_table_at(shapes, &space, &places, count, x, what, false, table, error);
 }
 
 void field_table_free(struct field_table *table)
@@ -133,6 +134,20 @@ static void interpolate_in_cell(const struct cells *cells, int64_t cell, int64_t
     }
 }
 
+enum status field_cells_at_nodes(const struct cells *from, const double *spacing, double within,
+                                 const struct cells *to, int64_t *cell, double *inward, struct error *error)
+{
+    int dim = to->dim;
+    memcpy(inward, to->x, (size_t)(to->node_count * dim) * sizeof *inward);
+    for (int64_t i = to->count * (dim + 1) - 1; i >= 0; i--) { /* towards the middle of its first cell */
+        double middle[3];
+        int64_t node = to->node[i];
+        cell_centroid(to, i / (dim + 1), middle);
+        vector_between(dim, to->x + node * dim, middle, into_cell, inward + node * dim);
+    }
+    return find_nearest(from, spacing, within, to->node_count, inward, cell, error);
+}
+
 enum status field_carry(const struct cells *from, int64_t cols, const double *values, const struct cells *to,
                         double *result, struct error *error)
 {
@@ -140,18 +155,11 @@ enum status field_carry(const struct cells *from, int64_t cols, const double *va
     if (from->count == 0) {
         return fail(error, STATUS_INPUT, "no cells, within which the field is interpolated");
     }
-    NEW_SCRATCH(double, within, to->node_count * dim, error);
     NEW_SCRATCH(double, spacing, from->node_count, error);
+    NEW_SCRATCH(double, inward, to->node_count * dim, error);
     NEW_SCRATCH(int64_t, cell, to->node_count, error);
-    memcpy(within, to->x, (size_t)(to->node_count * dim) * sizeof *within);
-    for (int64_t i = to->count * (dim + 1) - 1; i >= 0; i--) { /* towards the middle of its first cell */
-        double middle[3];
-        int64_t node = to->node[i];
-        cell_centroid(to, i / (dim + 1), middle);
-        vector_between(dim, to->x + node * dim, middle, into_cell, within + node * dim);
-    }
     RETURN_IF_ERROR(field_spacing(from, spacing, error));
-    RETURN_IF_ERROR(find_nearest(from, spacing, FIELD_MARGIN, to->node_count, within, cell, error));
+    RETURN_IF_ERROR(field_cells_at_nodes(from, spacing, FIELD_MARGIN, to, cell, inward, error));
     for (int64_t n = 0; n < to->node_count; n++) {
         const double *x = to->x + n * dim;
         if (cell[n] < 0) {

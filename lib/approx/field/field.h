@@ -38,6 +38,14 @@ MUST_CHECK enum status field_outside(const struct cells *cells, const double *sp
  * another mesh may lie slightly outside of a curved boundary. */
 #define FIELD_MARGIN 1.0
 
+/* cell[to->node_count]: the cell nearest to each node of other cells, on the side of its own cells where
+ * faces of a slit or bodies touch; -1: all are farther than `within` spacings. `from` has cells.
+ * inward[to->node_count * dim]: the nodes moved into their own cells by a thousandth, which were looked for.
+ */
+MUST_CHECK enum status field_cells_at_nodes(const struct cells *from, const double *spacing, double within,
+                                            const struct cells *to, int64_t *cell, double *inward,
+                                            struct error *error);
+
 /* result[to->node_count * cols] at the nodes of other cells of about the same body: linear interpolation in
  * each cell of values[node_count * cols]. Outside of the cells, that of the nearest cell is continued;
  * STATUS_INPUT farther away than FIELD_MARGIN. An interpolated displacement that inverts none of these cells
@@ -63,10 +71,11 @@ MUST_CHECK enum status field_table_at(const struct field_shapes *shapes, const s
                                       const char *what, bool gradients, struct field_table *table,
                                       struct error *error);
 
-/* The same, without gradients, for a space of these cells. */
+/* The same, without gradients, for a space of these cells; cell[count]: which of them each point is in, -1:
+ * not known; NULL: of none. */
 MUST_CHECK enum status field_table_build(const struct field_shapes *shapes, const struct cells *cells,
-                                         int64_t count, const double *x, const char *what,
-                                         struct field_table *table, struct error *error);
+                                         const int32_t *cell, int64_t count, const double *x,
+                                         const char *what, struct field_table *table, struct error *error);
 void field_table_free(struct field_table *table);
 
 /* values[count * cols] = sum over the row's neighbours of phi_j field[j * cols ...]. */

@@ -2,6 +2,7 @@
 
 #include "base/box.h"
 #include "base/memory.h"
+#include "base/round_off.h"
 #include "base/vector.h"
 
 #include <gsl/gsl_sort.h>
@@ -10,12 +11,36 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* match[a_count]: for each node of cloud A the node of cloud B at the same place, within 1e-9 of the larger
- * extent of the clouds; each is used once. *matched: false if the counts differ or a node of A has none;
- * match[] is then undefined. */
-static enum status match_nodes(int dim, int64_t a_count, const double *a, int64_t b_count, const double *b,
-                               int32_t *match, bool *matched, struct error *error)
+/* middle[node_count * dim]: the mean of the centroids of the cells at each node, which tells the sides of a
+ * slit apart; without cells the node itself. */
+static enum status find_middles(const struct cells *cells, double *middle, struct error *error)
 {
+    int dim = cells->dim, corners = dim + 1;
+    NEW_SCRATCH(int64_t, count, cells->node_count, error);
+    for (int64_t i = 0; i < cells->count * corners; i++) {
+        count[cells->node[i]]++;
+    }
+    for (int64_t n = 0; n < cells->node_count; n++) {
+        memcpy(middle + n * dim, cells->x + n * dim, (size_t)(count[n] == 0 ? dim : 0) * sizeof *middle);
+    }
+    for (int64_t i = 0; i < cells->count * corners; i++) {
+        double centroid[3];
+        cell_centroid(cells, i / corners, centroid);
+        add_scaled(dim, 1.0 / (double)count[cells->node[i]], centroid,
+                   middle + (int64_t)cells->node[i] * dim);
+    }
+    return STATUS_OK;
+}
+
+/* match[]: for each node of cloud A the node of cloud B at the same place, within 1e-9 of the larger extent
+ * of the clouds, of several that on the same side; each is used once. *matched: false if the counts differ or
+ * a node of A has none; match[] is then undefined. */
+static enum status match_nodes(const struct cells *a_cells, const struct cells *b_cells, int32_t *match,
+                               bool *matched, struct error *error)
+{
+    int dim = a_cells->dim;
+    int64_t a_count = a_cells->node_count, b_count = b_cells->node_count;
+    const double *a = a_cells->x, *b = b_cells->x;
     FREED_BY(point_grid_free) struct point_grid grid = {0};
     FREED_BY(index_list_free) struct index_list list = {0};
     struct box box = box_of(dim, a_count, a);
@@ -26,6 +51,10 @@ static enum status match_nodes(int dim, int64_t a_count, const double *a, int64_
     }
     NEW_SCRATCH(double, radius, b_count, error);
     NEW_SCRATCH(bool, used, b_count, error);
+    NEW_SCRATCH(double, a_middle, a_count * dim, error);
+    NEW_SCRATCH(double, b_middle, b_count * dim, error);
+    RETURN_IF_ERROR(find_middles(a_cells, a_middle, error));
+    RETURN_IF_ERROR(find_middles(b_cells, b_middle, error));
     for (int64_t n = 0; n < b_count; n++) {
         radius[n] = fmax(1e-9 * box_side(&box) * sqrt((double)dim), 1e-100);
     }
@@ -33,13 +62,18 @@ static enum status match_nodes(int dim, int64_t a_count, const double *a, int64_
     for (int64_t n = 0; n < a_count && *matched; n++) {
         list.count = 0;
         RETURN_IF_ERROR(point_grid_query(&grid, a + n * dim, 1.0, &list, error));
-        int64_t at = 0;
-        while (at < list.count && used[list.index[at]]) {
-            at++;
+        double nearest2 = INFINITY;
+        *matched = false;
+        for (int64_t i = 0; i < list.count; i++) {
+            int32_t other = list.index[i];
+            double away2 = vector_distance2(dim, a_middle + n * dim, b_middle + (int64_t)other * dim);
+            if (!used[other] && away2 < nearest2) {
+                nearest2 = away2;
+                match[n] = other;
+                *matched = true;
+            }
         }
-        *matched = at < list.count;
         if (*matched) {
-            match[n] = list.index[at];
             used[match[n]] = true;
         }
     }
@@ -134,6 +168,39 @@ static enum status drop_outside(const struct nodal_field *a, const struct nodal_
     return STATUS_OK;
 }
 
+static bool contains(const struct cells *cells, int32_t cell, const double *x)
+{
+    double coordinate[4], least = 0.0;
+    cell_barycentric(cells, cell, x, coordinate);
+    for (int k = 0; k <= cells->dim; k++) {
+        least = fmin(least, coordinate[k]);
+    }
+    return least >= -COARSE_ROUND_OFF;
+}
+
+/* cell[comparison->count]: the cell of B that each point, a compared node of A, lies in, on the side of its
+ * cells in A; -1: in none. A node that is only beside that cell is moved into its own one, by a thousandth.
+ */
+static enum status find_cells(const struct nodal_field *a, const struct nodal_field *b, const double *spacing,
+                              const struct field_comparison *comparison, double *points, int32_t *cell,
+                              struct error *error)
+{
+    int dim = a->cells.dim;
+    NEW_SCRATCH(int64_t, nearest, a->cells.node_count, error);
+    NEW_SCRATCH(double, inward, a->cells.node_count * dim, error);
+    RETURN_IF_ERROR(field_cells_at_nodes(&b->cells, spacing, 0.0, &a->cells, nearest, inward, error));
+    for (int64_t i = 0; i < comparison->count; i++) {
+        const double *into = inward + comparison->node[i] * dim;
+        cell[i] = (int32_t)nearest[comparison->node[i]];
+        if (cell[i] >= 0 && !contains(&b->cells, cell[i], points + i * dim)) {
+            bool inside = contains(&b->cells, cell[i], into);
+            memcpy(points + i * dim, into, (size_t)(inside ? dim : 0) * sizeof *into);
+            cell[i] = inside ? cell[i] : -1;
+        }
+    }
+    return STATUS_OK;
+}
+
 /* B's field at the chosen nodes of A. */
 static enum status interpolate(const struct nodal_field *a, const struct nodal_field *b, bool skip,
                                struct field_comparison *comparison, double *reference, struct error *error)
@@ -149,8 +216,11 @@ static enum status interpolate(const struct nodal_field *a, const struct nodal_f
     RETURN_IF_ERROR(support_radii(&fit.support, b->cells.node_count, spacing, radius, error));
     fit.supports.radius = radius;
     fit.shapes = fit.support.mls;
-    RETURN_IF_ERROR(field_table_build(b->shapes != NULL ? b->shapes : &fit, &b->cells, comparison->count,
-                                      points, "nodes of A within B", &table, error));
+    bool sides = a->cells.count > 0 && b->cells.count > 0;
+    NEW_SCRATCH(int32_t, cell, comparison->count, error);
+    RETURN_IF_ERROR(sides ? find_cells(a, b, spacing, comparison, points, cell, error) : STATUS_OK);
+    RETURN_IF_ERROR(field_table_build(b->shapes != NULL ? b->shapes : &fit, &b->cells, sides ? cell : NULL,
+                                      comparison->count, points, "nodes of A within B", &table, error));
     field_evaluate(comparison->count, table.lists.ptr, table.lists.idx, table.phi, b->cols,
                    b->parameters != NULL ? b->parameters : b->values, values);
     for (int64_t i = 0; i < comparison->count; i++) {
@@ -178,8 +248,7 @@ enum status field_compare(const struct nodal_field *a, const struct nodal_field 
     for (int64_t i = 0; i < count * cols; i++) {
         reference[i] = NAN;
     }
-    RETURN_IF_ERROR(match_nodes(a->cells.dim, count, a->cells.x, b->cells.node_count, b->cells.x, match,
-                                &comparison->coincide, error));
+    RETURN_IF_ERROR(match_nodes(&a->cells, &b->cells, match, &comparison->coincide, error));
     if (comparison->coincide) {
         for (int64_t i = 0; i < comparison->count; i++) {
             int64_t node = comparison->node[i];

@@ -303,21 +303,21 @@ static int64_t group_of(struct inp *p, struct inp_set *set, int dim)
     return set->key[dim];
 }
 
-/* region[]: the set of each element's section, else the last set that it is in and that is not there for a
- * surface. Returns how many are in several of these. */
+/* region[]: the set of each element's last section, else the last set that it is in and that is not there for
+ * a surface. Returns how many are in several of these. */
 static int64_t find_regions(struct inp *p, struct inp_set **region)
 {
     int64_t overlaid[2] = {0, 0};
     bool any = false;
-    for (int64_t i = 0; i < 2 * p->set_count; i++) {
-        struct inp_set *set = p->sets[i % p->set_count];
-        bool last = i >= p->set_count,
-             wanted = last ? set->of_section > 0 : !set->of_surface || set->of_elements;
+    for (int64_t s = 0; s < p->set_count; s++) {
+        struct inp_set *set = p->sets[s];
+        bool wanted = set->of_section > 0 || !set->of_surface || set->of_elements;
         any = any || set->of_section > 0;
         for (int64_t m = 0; m < set->count && set->kind == 'E' && wanted; m++) {
-            const struct inp_set *before = region[set->member[m]];
-            overlaid[last] += before != NULL && before != set && (!last || before->of_section > 0);
-            region[set->member[m]] = set;
+            struct inp_set **now = &region[set->member[m]];
+            bool both = *now != NULL && *now != set && ((*now)->of_section > 0) == (set->of_section > 0);
+            overlaid[set->of_section > 0] += both;
+            *now = *now == NULL || set->of_section >= (*now)->of_section ? set : *now;
         }
     }
     return overlaid[any];
