@@ -176,7 +176,7 @@ TEST_IN_EACH_DIM(kinks_are_exact)
         FREED_BY(field_table_free) struct field_table table = {0};
         options.side = stops ? halves.side : NULL;
         GOOD(field_table_build(&(struct field_shapes){{halves.radius, NULL}, options, options.mls},
-                               &halves.cells, COUNT, x, "points", &table, &error));
+                               &halves.cells, NULL, COUNT, x, "points", &table, &error));
         field_evaluate(COUNT, table.lists.ptr, table.lists.idx, table.phi, 1, field, got);
         for (int64_t p = 0; p < COUNT; p++) {
             double exact = fabs(x[p * dim] - 0.5) + 0.3 * x[p * dim + dim - 1];

@@ -4,9 +4,18 @@
 
 #include "base/memory.h"
 #include "base/vector.h"
+#include "solid/rigid/rigid.h"
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
+
+/* A point is on a facet if it is no farther, by the facet's width; and a component is along the normal. */
+static const double on_facet = 0.01, along_normal = 0.9;
+
+static const char *const too_many = "too many points for the nodes there, one twice, or one on what another "
+                                    "section holds: leave it out, give "
+                                    "standard deviations, or refine the cloud";
 
 /* One condition of measured points. */
 struct point_condition {
@@ -168,8 +177,45 @@ static enum status set_energy(struct point_condition *p, struct error *error)
     return STATUS_OK;
 }
 
+/* Whether a section that holds facets prescribes component a where their normal is this. */
+static bool prescribes(const struct condition *condition, const double *normal, int a)
+{
+    return condition->kind == CONDITION_NORMAL       ? fabs(normal[a]) > along_normal
+           : condition->kind == CONDITION_COMPONENTS ? !condition->is_free[a]
+                                                     : true;
+}
+
+/* Refuse exact points on facets of another section that prescribes one of their components. */
+static enum status check_facets(const struct point_condition *p, const struct condition *other,
+                                struct error *error)
+{
+    int dim = p->measured->dim;
+    int64_t corners = other->facets.count * dim;
+    FREED_BY(rigid_free) struct rigid_surface surface = {0};
+    NEW_SCRATCH(double, corner, corners * dim, error);
+    for (int64_t k = 0; k < corners; k++) {
+        memcpy(corner + k * dim, p->input->cells.x + (int64_t)other->facets.facet[k] * dim,
+               (size_t)dim * sizeof *corner);
+    }
+    RETURN_IF_ERROR(rigid_build(dim, other->facets.count, corner, false, &surface, error));
+    for (int64_t i = 0; i < p->measured->count; i++) {
+        struct rigid_contact closest = rigid_closest(&surface, p->measured->x + i * dim, INFINITY);
+        double area[3];
+        face_area_vector(dim, p->input->cells.x, other->facets.facet + closest.facet * dim, area);
+        double width = pow(vector_length(dim, area), 1.0 / (dim - 1));
+        bool on = !(p->measured->deviation[i] > 0.0) && closest.found && closest.distance < on_facet * width;
+        for (int a = 0; a < dim && on; a++) {
+            if (!isnan(p->measured->u[i * dim + a]) &&
+                prescribes(other, surface.normal + closest.facet * dim, a)) {
+                return condition_fail_at(p->condition, i, error, too_many);
+            }
+        }
+    }
+    return STATUS_OK;
+}
+
 /* Refuse exact rows from `first` on, one for each known component, that are nearly linearly dependent on each
- * other or on rows of earlier sections. */
+ * other or on rows of earlier sections, or on facets that these hold. */
 static enum status check_rows(const struct point_condition *p, int64_t first, struct error *error)
 {
     const struct constraint_rows *rows = &p->system->rows;
@@ -180,12 +226,15 @@ static enum status check_rows(const struct point_condition *p, int64_t first, st
     for (int64_t i = 0; i < p->measured->count; i++) {
         for (int a = 0; a < dim && !(p->measured->deviation[i] > 0.0); a++) {
             if (!isnan(p->measured->u[i * dim + a]) && dependent[row++]) {
-                return condition_fail_at(
-                    p->condition, i, error,
-                    "too many points for the nodes there, one twice, or one on what another section "
-                    "holds: leave it out, give standard deviations, or refine the cloud");
+                return condition_fail_at(p->condition, i, error, too_many);
             }
         }
+    }
+    for (int64_t c = 0; c < p->input->condition_count; c++) {
+        const struct condition *other = &p->input->conditions[c];
+        RETURN_IF_ERROR(other->kind != CONDITION_POINTS && other->facets.count > 0
+                            ? check_facets(p, other, error)
+                            : STATUS_OK);
     }
     return STATUS_OK;
 }

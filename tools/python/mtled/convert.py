@@ -6,6 +6,7 @@ from .stream import StreamError
 
 CELLS = {(2, 3): ("triangle", 5), (3, 4): ("tetra", 10)}
 FACETS = {(2, 2): "line", (3, 3): "triangle"}
+OF_CELLS = ("cells", "points", "stress", "strain", "pressure", "volume_ratio", "fibre", "J")  # first parts of names, as in tovtk
 
 
 def _in_space(values):
@@ -26,8 +27,8 @@ def _parts(stream, deformed):
         x = x + np.asarray(stream["u"])
     places = _in_space(x)
     fields = {name: _in_space(np.asarray(v)) for name, v in stream.items() if v.dtype.kind == "f" and name != "nodes.x"}
-    at_nodes = {name: v for name, v in fields.items() if len(v) == len(x)}
-    in_cells = {name: v for name, v in fields.items() if len(v) == len(cells) and name not in at_nodes}
+    in_cells = {name: v for name, v in fields.items() if len(v) == len(cells) and (len(cells) != len(x) or name.split(".")[0] in OF_CELLS)}
+    at_nodes = {name: v for name, v in fields.items() if len(v) == len(x) and name not in in_cells}
     return places, cells, kind, at_nodes, in_cells
 
 
