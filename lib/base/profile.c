@@ -8,6 +8,7 @@
 #include <string.h>
 
 enum { PANEL = 64 };                 /* columns of L that are computed at a time, and then subtracted */
+enum { CACHED = 256 };               /* columns of some rows that are reduced at a time */
 enum { ENTRIES_FOR_THREAD = 50000 }; /* see chunks_of */
 
 enum status profile_begin(int64_t count, int64_t numbers, struct profile *profile, struct error *error)
@@ -80,13 +81,25 @@ static void reduce_in_panel(const struct panel *panel, int64_t i, struct row row
     }
 }
 
-/* Row i less what the panel takes, from column `begin` on. */
-static void reduce_behind(const struct panel *panel, int64_t i, int64_t begin, struct row row)
+static int64_t lesser(int64_t a, int64_t b)
 {
-    int64_t from = larger(begin, row.first);
-    for (int64_t c = larger(panel->k, row.first); c < panel->last && c < i; c++) {
-        dense_add_row(i + 1 - from, -row.value[c - row.first], column_of(panel, c) + from,
-                      row.value + from - row.first);
+    return a < b ? a : b;
+}
+
+/* Rows i to before `end`, of one row of blocks, less what the panel takes, from column `begin` on: some
+ * columns at a time, which stay in the cache for all of the rows. */
+static void reduce_behind(const struct profile *profile, const struct panel *panel, int64_t i, int64_t end,
+                          int64_t begin, double *value)
+{
+    int64_t first = row_of(profile, i, value).first, to;
+    for (int64_t from = larger(begin, first); from < end; from = to) {
+        to = lesser(from + CACHED, end);
+        for (int64_t c = larger(panel->k, first); c < lesser(panel->last, end - 1); c++) {
+            for (int64_t k = larger(larger(i, from), c + 1); k < end; k++) {
+                double *row = row_of(profile, k, value).value - first;
+                dense_add_row(lesser(to, k + 1) - from, -row[c], column_of(panel, c) + from, row + from);
+            }
+        }
     }
 }
 
@@ -97,7 +110,7 @@ static bool factorise_panel(const struct profile *profile, const struct panel *p
         struct row row = row_of(profile, i, value);
         reduce_in_panel(panel, i, row);
         double *pivot = row.value + i - row.first;
-        reduce_behind(panel, i, i, row);
+        reduce_behind(profile, panel, i, i + 1, i, value);
         if (!(*pivot > 0.0 && isfinite(*pivot))) {
             return false;
         }
@@ -109,7 +122,7 @@ static bool factorise_panel(const struct profile *profile, const struct panel *p
 /* The rows behind the panel. */
 static void reduce(const struct profile *profile, const struct panel *panel, double *value)
 {
-    int64_t rows = 0;
+    int64_t rows = 0, numbers = profile->numbers;
     for (int64_t i = panel->last; i < panel->n; i++) {
         rows += row_of(profile, i, value).first < panel->last;
     }
@@ -120,8 +133,9 @@ static void reduce(const struct profile *profile, const struct panel *panel, dou
             reduce_in_panel(panel, i, row_of(profile, i, value));
         }
 #pragma omp for schedule(static, 1)
-        for (int64_t i = panel->last; i < panel->n; i++) {
-            reduce_behind(panel, i, panel->last, row_of(profile, i, value));
+        for (int64_t row = panel->last / numbers; row < profile->count; row++) {
+            reduce_behind(profile, panel, larger(panel->last, row * numbers), (row + 1) * numbers,
+                          panel->last, value);
         }
     }
 }

@@ -15,8 +15,8 @@ enum { NODES_ACROSS_GROUP = 4 };
 /* Unknowns at most where each costs an evaluation: 16 groups in two dimensions and 8 in three. */
 static const int64_t most_unknowns = 96;
 /* Groups at most where the stiffness is assembled, by the number of nodes to this power: its factor costs
- * some two evaluations then. */
-static const double most_groups_2d = 4.0, power_2d = 1.0 / 2.0, most_groups_3d = 3.6, power_3d = 3.0 / 7.0;
+ * about as much as some evaluations then. */
+static const double most_groups_2d = 4.0, power_2d = 1.0 / 2.0, most_groups_3d = 9.0, power_3d = 1.0 / 3.0;
 
 static int64_t group_count(const struct solid_system *system)
 {
