@@ -55,6 +55,11 @@ static int64_t larger(int64_t a, int64_t b)
     return a > b ? a : b;
 }
 
+static int64_t lesser(int64_t a, int64_t b)
+{
+    return a < b ? a : b;
+}
+
 /* Columns k to before `last` of L. */
 struct panel {
     int64_t n, k, last;
@@ -81,11 +86,6 @@ static void reduce_in_panel(const struct panel *panel, int64_t i, struct row row
     }
 }
 
-static int64_t lesser(int64_t a, int64_t b)
-{
-    return a < b ? a : b;
-}
-
 /* Rows i to before `end`, of one row of blocks, less what the panel takes, from column `begin` on: some
  * columns at a time, which stay in the cache for all of the rows. */
 static void reduce_behind(const struct profile *profile, const struct panel *panel, int64_t i, int64_t end,
@@ -96,8 +96,9 @@ static void reduce_behind(const struct profile *profile, const struct panel *pan
         to = lesser(from + CACHED, end);
         for (int64_t c = larger(panel->k, first); c < lesser(panel->last, end - 1); c++) {
             for (int64_t k = larger(larger(i, from), c + 1); k < end; k++) {
-                double *row = row_of(profile, k, value).value - first;
-                dense_add_row(lesser(to, k + 1) - from, -row[c], column_of(panel, c) + from, row + from);
+                double *row = row_of(profile, k, value).value;
+                dense_add_row(lesser(to, k + 1) - from, -row[c - first], column_of(panel, c) + from,
+                              row + from - first);
             }
         }
     }
@@ -145,7 +146,7 @@ bool profile_factorise(const struct profile *profile, double *value)
     struct panel panel = {.n = profile->count * profile->numbers, .column = profile->panel};
     while (panel.last < panel.n) {
         panel.k = panel.last;
-        panel.last = panel.n - panel.k < PANEL ? panel.n : panel.k + PANEL;
+        panel.last = lesser(panel.n, panel.k + PANEL);
         if (!factorise_panel(profile, &panel, value)) {
             return false;
         }
