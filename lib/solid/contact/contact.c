@@ -93,6 +93,7 @@ enum status contact_allocate(struct contact *contact, double stiffness, struct e
     RETURN_IF_ERROR(NEW_ARRAY(&contact->checked_x, count * dim, error));
     RETURN_IF_ERROR(NEW_ARRAY(&contact->checked_distance, count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&contact->checked_normal, count * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&contact->before, count * dim, error));
     RETURN_IF_ERROR(NEW_ARRAY(&contact->held, count * dim, error));
     RETURN_IF_ERROR(NEW_ARRAY(&contact->gap, count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&contact->pressure, count, error));
@@ -103,7 +104,7 @@ enum status contact_allocate(struct contact *contact, double stiffness, struct e
         contact->stiffness[p] = stiffness;
     }
     for (int64_t i = 0; i < count * dim; i++) {
-        contact->checked_x[i] = INFINITY; /* forces a search in the first evaluation */
+        contact->checked_x[i] = contact->before[i] = INFINITY; /* forces a search in the first evaluation */
     }
     return STATUS_OK;
 }
@@ -157,7 +158,7 @@ void contact_free(struct contact *contact)
     contact_between_free(contact);
     friction_free(contact);
     FREE_ALL(contact->stiffness, contact->rest, contact->multiplier, contact->behind, contact->checked_x,
-             contact->checked_distance, contact->checked_normal, contact->held, contact->gap,
+             contact->checked_distance, contact->checked_normal, contact->before, contact->held, contact->gap,
              contact->pressure, contact->normal, contact->view);
     *contact = (struct contact){0};
 }
@@ -174,6 +175,7 @@ enum status contact_state(struct contact *contact, const char *prefix, const str
         {"checked_x", STATE_NUMBERS, contact->checked_x, count * dim},
         {"checked_distance", STATE_NUMBERS, contact->checked_distance, count},
         {"checked_normal", STATE_NUMBERS, contact->checked_normal, count * dim},
+        {"before", STATE_NUMBERS, contact->before, count * dim},
     };
     RETURN_IF_ERROR(state_visit(state, prefix, values, sizeof values / sizeof *values, error));
     RETURN_IF_ERROR(contact_between_state(contact, prefix, state, error));
@@ -239,9 +241,27 @@ void contact_press_point(struct contact *contact, int64_t p, double gap, bool pr
 /* The side from which a point came: its place and the normal at the last step, and its place now. */
 struct side {
     const struct rigid_surface *surface;
-    const double *before, *normal, *now;
-    double round_off;
+    const double *before, *now;
+    double normal[3], round_off;
 };
+
+/* That of point p; false: it is not known. A point that was not searched for at the last step is now. */
+static bool find_side(const struct contact *contact, int64_t p, const double *now, struct side *side)
+{
+    int dim = contact->dim;
+    size_t bytes = (size_t)dim * sizeof *now;
+    *side = (struct side){.surface = &contact->surface,
+                          .before = contact->before + p * dim,
+                          .now = now,
+                          .round_off = contact_round_off(contact, p)};
+    if (memcmp(side->before, contact->checked_x + p * dim, bytes) == 0) {
+        memcpy(side->normal, contact->checked_normal + p * dim, bytes);
+    } else if (isfinite(side->before[0])) {
+        struct rigid_contact closest = rigid_closest(&contact->surface, side->before, INFINITY);
+        memcpy(side->normal, closest.normal, bytes);
+    }
+    return vector_dot(dim, side->normal, side->normal) > 0.5;
+}
 
 /* How far x is in front of the plane of facet f, m. */
 static double height_above(const struct rigid_surface *surface, int64_t f, const double *x)
@@ -264,22 +284,12 @@ static bool may_press(void *context, int64_t f)
            (cosine > -across && height_above(surface, f, side->now) >= 0.0);
 }
 
-static bool admits_any(void *context, int64_t f, const double *away)
-{
-    (void)context;
-    (void)f;
-    (void)away;
-    return true;
-}
-
 /* Search for the surface at point p. */
 static void search(struct contact *contact, int64_t p, struct contact_view *view)
 {
-    int dim = contact->dim;
-    struct side side = {&contact->surface, contact->checked_x + p * dim, contact->checked_normal + p * dim,
-                        view->sought, contact_round_off(contact, p)};
-    struct rigid_filter filter = {may_press, admits_any, &side};
-    bool known = vector_dot(dim, side.normal, side.normal) > 0.5;
+    struct side side;
+    bool known = find_side(contact, p, view->sought, &side);
+    struct rigid_filter filter = {may_press, NULL, &side};
     struct rigid_contact closest =
         rigid_closest_among(&contact->surface, view->sought, INFINITY, known ? &filter : NULL);
     bool was_inside = contact->checked_distance[p] < 0.0 && !contact->behind[p];
@@ -346,6 +356,7 @@ void contact_accept(struct contact *contact)
     for (int64_t p = 0; p < contact->count; p++) {
         const struct contact_view *view = &contact->view[p];
         contact->deepest = fmax(contact->deepest, contact->pressure[p] / contact->stiffness[p]);
+        memcpy(contact->before + p * dim, view->sought, (size_t)dim * sizeof *view->sought);
         if (view->searched) {
             contact->behind[p] = view->behind;
             contact->checked_distance[p] = view->distance;

@@ -68,6 +68,7 @@ struct contact {
     double *checked_x;        /* count * dim: y_p at the last search, m */
     double *checked_distance; /* count: distance of the surface then, m; negative: minus the penetration */
     double *checked_normal;   /* count * dim: of the surface there, in its frame */
+    double *before;           /* count * dim: y_p at the last step, m; whether searched or not */
     double *held;             /* count * dim: sum_a N_a(p) lambda_a, Pa; follows from the multipliers */
     /* Of the last evaluation. */
     double *gap; /* count: of x_p along the normal, m; INFINITY beyond a rim; where the surface is too far

@@ -61,7 +61,7 @@ struct rigid_contact {
 };
 
 /* A filter of facets. `considers` is called for facets that may be within reach, then `admits` for a facet f
- * whose closest point to x is x - away. */
+ * whose closest point to x is x - away; NULL: any. */
 struct rigid_filter {
     bool (*considers)(void *context, int64_t f);
     bool (*admits)(void *context, int64_t f, const double *away);

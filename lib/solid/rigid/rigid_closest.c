@@ -128,7 +128,7 @@ static void consider(const struct rigid_surface *surface, int64_t f, const doubl
     here.distance2 = vector_dot(dim, away, away);
     if ((here.distance2 < nearest->distance2 * (1.0 - ROUND_OFF) ||
          (here.distance2 <= nearest->distance2 * (1.0 + ROUND_OFF) && nearest->rim && !here.rim)) &&
-        (filter == NULL || filter->admits(filter->context, f, away))) {
+        (filter == NULL || filter->admits == NULL || filter->admits(filter->context, f, away))) {
         *nearest = here;
     }
 }
