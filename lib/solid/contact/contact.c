@@ -175,7 +175,7 @@ enum status contact_state(struct contact *contact, const char *prefix, const str
         {"checked_x", STATE_NUMBERS, contact->checked_x, count * dim},
         {"checked_distance", STATE_NUMBERS, contact->checked_distance, count},
         {"checked_normal", STATE_NUMBERS, contact->checked_normal, count * dim},
-        {"before", STATE_NUMBERS, contact->before, count * dim},
+        {"step_x", STATE_NUMBERS, contact->before, count * dim},
     };
     RETURN_IF_ERROR(state_visit(state, prefix, values, sizeof values / sizeof *values, error));
     RETURN_IF_ERROR(contact_between_state(contact, prefix, state, error));
