@@ -222,7 +222,10 @@ static const char *when_text(const struct run *run, double time, char text[48])
 {
     double duration = run->scene->duration;
     bool in_time = run->scene->analysis == SCENE_DYNAMIC || duration > 0.0;
-    snprintf(text, 48, in_time ? "t = %.4g s" : time < 1.0 ? "%.4g of the load" : "the whole load",
+    snprintf(text, 48,
+             in_time      ? "t = %.4g s"
+             : time < 1.0 ? "%.4g of the load"
+                          : "the whole load",
              duration > 0.0 ? time * duration : time);
     return text;
 }
