@@ -59,16 +59,13 @@ static enum status read_side(const struct group_body *body, const char *text, st
     RETURN_IF_ERROR(parse_double(comma + 1, "the angle", -180, 180, &side->angle, error));
     NEW_SCRATCH(bool, chosen, body->items[GROUP_FACETS].count, error);
     RETURN_IF_ERROR(group_select(body, GROUP_FACETS, expression, 1, chosen, error));
-    NEW_SCRATCH(double, corners, body->boundary.count * 9, error);
+    NEW_SCRATCH(int32_t, facet, body->boundary.count * 3, error);
     int64_t count = 0;
     for (int64_t f = 0; f < body->boundary.count; f++) {
-        for (int k = 0; k < 3 && chosen[f]; k++) {
-            memcpy(corners + 9 * count + 3 * k, body->cells.x + 3 * (int64_t)body->boundary.node[3 * f + k],
-                   3 * sizeof *corners);
-        }
+        memcpy(facet + 3 * count, body->boundary.node + 3 * f, 3 * sizeof *facet);
         count += chosen[f];
     }
-    return count > 0 ? rigid_build(3, count, corners, false, &side->surface, error)
+    return count > 0 ? rigid_of_facets(3, body->cells.x, count, facet, &side->surface, error)
                      : fail(error, STATUS_INPUT, "chooses no facets of the boundary");
 }
 

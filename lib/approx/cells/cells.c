@@ -67,6 +67,17 @@ void cell_barycentric(const struct cells *cells, int64_t cell, const double *x, 
     }
 }
 
+bool cell_contains(const struct cells *cells, int64_t cell, const double *x, double least)
+{
+    double coordinate[4];
+    bool within = true;
+    cell_barycentric(cells, cell, x, coordinate);
+    for (int k = 0; k <= cells->dim; k++) {
+        within = within && coordinate[k] > least;
+    }
+    return within;
+}
+
 void face_area_vector(int dim, const double *x, const int32_t *face, double *vector)
 {
     double u[3], v[3];

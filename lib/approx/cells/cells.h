@@ -38,6 +38,9 @@ double cell_volume(const struct cells *cells, int64_t cell);
  * negative. */
 void cell_barycentric(const struct cells *cells, int64_t cell, const double *x, double *coordinate);
 
+/* Whether these are all larger than `least`. */
+bool cell_contains(const struct cells *cells, int64_t cell, const double *x, double least);
+
 /* corner[dim + 1] = the coordinates of a cell's vertices. */
 void cell_corners(const struct cells *cells, int64_t cell, const double *corner[4]);
 

@@ -39,8 +39,9 @@ MUST_CHECK enum status field_outside(const struct cells *cells, const double *sp
 #define FIELD_MARGIN 1.0
 
 /* cell[to->node_count]: the cell nearest to each node of other cells, on the side of its own cells where
- * faces of a slit or bodies touch; -1: all are farther than `within` spacings. `from` has cells.
- * inward[to->node_count * dim]: the nodes moved into their own cells by a thousandth, which were looked for.
+ * faces of a slit or bodies touch; -1: all are farther than `within` spacings. Without cells: as
+ * field_outside. inward[to->node_count * dim]: the nodes moved into their own cells by a thousandth, which
+ * were looked for.
  */
 MUST_CHECK enum status field_cells_at_nodes(const struct cells *from, const double *spacing, double within,
                                             const struct cells *to, int64_t *cell, double *inward,

@@ -137,22 +137,16 @@ double field_percentile(const struct field_statistics *statistics, double percen
                                  : NAN;
 }
 
-/* Drop the chosen nodes outside of B's body, or fail on the first. points: the coordinates of those kept. */
-static enum status drop_outside(const struct nodal_field *a, const struct nodal_field *b,
-                                const double *spacing, bool skip, struct field_comparison *comparison,
-                                double *points, struct error *error)
+/* Drop the chosen nodes that have no nearest cell of B, or fail on the first. points: the coordinates of
+ * those kept. */
+static enum status drop_outside(const struct nodal_field *a, const int64_t *nearest, bool skip,
+                                struct field_comparison *comparison, double *points, struct error *error)
 {
     int dim = a->cells.dim;
     int64_t kept = 0, first = -1;
     for (int64_t i = 0; i < comparison->count; i++) {
-        memcpy(points + i * dim, a->cells.x + comparison->node[i] * dim, (size_t)dim * sizeof *points);
-    }
-    NEW_SCRATCH(bool, outside, comparison->count, error);
-    RETURN_IF_ERROR(
-        field_outside(&b->cells, spacing, FIELD_MARGIN, comparison->count, points, outside, error));
-    for (int64_t i = 0; i < comparison->count; i++) {
-        if (!outside[i]) {
-            memmove(points + kept * dim, points + i * dim, (size_t)dim * sizeof *points);
+        if (nearest[comparison->node[i]] >= 0) {
+            memcpy(points + kept * dim, a->cells.x + comparison->node[i] * dim, (size_t)dim * sizeof *points);
             comparison->node[kept++] = comparison->node[i];
         } else if (first < 0) {
             first = comparison->node[i];
@@ -168,37 +162,22 @@ static enum status drop_outside(const struct nodal_field *a, const struct nodal_
     return STATUS_OK;
 }
 
-static bool contains(const struct cells *cells, int32_t cell, const double *x)
-{
-    double coordinate[4], least = 0.0;
-    cell_barycentric(cells, cell, x, coordinate);
-    for (int k = 0; k <= cells->dim; k++) {
-        least = fmin(least, coordinate[k]);
-    }
-    return least >= -COARSE_ROUND_OFF;
-}
-
 /* cell[comparison->count]: the cell of B that each point, a compared node of A, lies in, on the side of its
  * cells in A; -1: in none. A node that is only beside that cell is moved into its own one, by a thousandth.
  */
-static enum status find_cells(const struct nodal_field *a, const struct nodal_field *b, const double *spacing,
-                              const struct field_comparison *comparison, double *points, int32_t *cell,
-                              struct error *error)
+static void find_cells(const struct cells *b, const struct field_comparison *comparison,
+                       const int64_t *nearest, const double *inward, double *points, int32_t *cell)
 {
-    int dim = a->cells.dim;
-    NEW_SCRATCH(int64_t, nearest, a->cells.node_count, error);
-    NEW_SCRATCH(double, inward, a->cells.node_count * dim, error);
-    RETURN_IF_ERROR(field_cells_at_nodes(&b->cells, spacing, 0.0, &a->cells, nearest, inward, error));
+    int dim = b->dim;
     for (int64_t i = 0; i < comparison->count; i++) {
-        const double *into = inward + comparison->node[i] * dim;
-        cell[i] = (int32_t)nearest[comparison->node[i]];
-        if (cell[i] >= 0 && !contains(&b->cells, cell[i], points + i * dim)) {
-            bool inside = contains(&b->cells, cell[i], into);
-            memcpy(points + i * dim, into, (size_t)(inside ? dim : 0) * sizeof *into);
+        int64_t node = comparison->node[i];
+        cell[i] = (int32_t)nearest[node];
+        if (!cell_contains(b, cell[i], points + i * dim, -COARSE_ROUND_OFF)) {
+            bool inside = cell_contains(b, cell[i], inward + node * dim, -COARSE_ROUND_OFF);
+            memcpy(points + i * dim, inward + node * dim, (size_t)(inside ? dim : 0) * sizeof *points);
             cell[i] = inside ? cell[i] : -1;
         }
     }
-    return STATUS_OK;
 }
 
 /* B's field at the chosen nodes of A. */
@@ -210,15 +189,21 @@ static enum status interpolate(const struct nodal_field *a, const struct nodal_f
     NEW_SCRATCH(double, spacing, b->cells.node_count, error);
     NEW_SCRATCH(double, radius, b->cells.node_count, error);
     NEW_SCRATCH(double, points, a->cells.node_count * a->cells.dim, error);
+    NEW_SCRATCH(double, inward, a->cells.node_count * a->cells.dim, error);
+    NEW_SCRATCH(int64_t, nearest, a->cells.node_count, error);
     NEW_SCRATCH(double, values, a->cells.node_count * a->cols, error);
     RETURN_IF_ERROR(field_spacing(&b->cells, spacing, error));
-    RETURN_IF_ERROR(drop_outside(a, b, spacing, skip, comparison, points, error));
+    RETURN_IF_ERROR(
+        field_cells_at_nodes(&b->cells, spacing, FIELD_MARGIN, &a->cells, nearest, inward, error));
+    RETURN_IF_ERROR(drop_outside(a, nearest, skip, comparison, points, error));
     RETURN_IF_ERROR(support_radii(&fit.support, b->cells.node_count, spacing, radius, error));
     fit.supports.radius = radius;
     fit.shapes = fit.support.mls;
     bool sides = a->cells.count > 0 && b->cells.count > 0;
     NEW_SCRATCH(int32_t, cell, comparison->count, error);
-    RETURN_IF_ERROR(sides ? find_cells(a, b, spacing, comparison, points, cell, error) : STATUS_OK);
+    if (sides) {
+        find_cells(&b->cells, comparison, nearest, inward, points, cell);
+    }
     RETURN_IF_ERROR(field_table_build(b->shapes != NULL ? b->shapes : &fit, &b->cells, sides ? cell : NULL,
                                       comparison->count, points, "nodes of A within B", &table, error));
     field_evaluate(comparison->count, table.lists.ptr, table.lists.idx, table.phi, b->cols,

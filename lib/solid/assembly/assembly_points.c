@@ -8,7 +8,6 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 /* A point is on a facet if it is no farther, by the facet's width; and a component is along the normal. */
 static const double on_facet = 0.01, along_normal = 0.9;
@@ -190,18 +189,13 @@ static enum status check_facets(const struct point_condition *p, const struct co
                                 struct error *error)
 {
     int dim = p->measured->dim;
-    int64_t corners = other->facets.count * dim;
+    const double *x = p->input->cells.x;
     FREED_BY(rigid_free) struct rigid_surface surface = {0};
-    NEW_SCRATCH(double, corner, corners * dim, error);
-    for (int64_t k = 0; k < corners; k++) {
-        memcpy(corner + k * dim, p->input->cells.x + (int64_t)other->facets.facet[k] * dim,
-               (size_t)dim * sizeof *corner);
-    }
-    RETURN_IF_ERROR(rigid_build(dim, other->facets.count, corner, false, &surface, error));
+    RETURN_IF_ERROR(rigid_of_facets(dim, x, other->facets.count, other->facets.facet, &surface, error));
     for (int64_t i = 0; i < p->measured->count; i++) {
         struct rigid_contact closest = rigid_closest(&surface, p->measured->x + i * dim, INFINITY);
         double area[3];
-        face_area_vector(dim, p->input->cells.x, other->facets.facet + closest.facet * dim, area);
+        face_area_vector(dim, x, other->facets.facet + closest.facet * dim, area);
         double width = pow(vector_length(dim, area), 1.0 / (dim - 1));
         bool on = !(p->measured->deviation[i] > 0.0) && closest.found && closest.distance < on_facet * width;
         for (int a = 0; a < dim && on; a++) {

@@ -97,18 +97,6 @@ static enum status find_surfaces(struct folds *folds, struct error *error)
     return STATUS_OK;
 }
 
-/* Whether a cell contains a point, barycentric coordinates being larger than FOLD_BEYOND_FACET. */
-static bool contains(const struct cells *cells, int64_t cell, const double *point)
-{
-    double coordinate[4];
-    bool within = true;
-    cell_barycentric(cells, cell, point, coordinate);
-    for (int k = 0; k <= cells->dim; k++) {
-        within = within && coordinate[k] > FOLD_BEYOND_FACET;
-    }
-    return within;
-}
-
 /* Whether two cells have a node together. */
 static bool are_neighbours(const struct folds *folds, int64_t c, int64_t other)
 {
@@ -156,8 +144,8 @@ static enum status look_for_overlaps(struct folds *folds, bool of_bodies, struct
             int32_t other = near.index[i];
             bool apart =
                 folds->part[other] != folds->part[c] || (!of_bodies && !are_neighbours(folds, c, other));
-            if (apart && contains(&now, c, middle + (int64_t)other * dim) && !is_left_out(folds, &now, c) &&
-                !is_left_out(folds, &now, other) && fold->count++ == 0) {
+            if (apart && cell_contains(&now, c, middle + (int64_t)other * dim, FOLD_BEYOND_FACET) &&
+                !is_left_out(folds, &now, c) && !is_left_out(folds, &now, other) && fold->count++ == 0) {
                 fold->kind = FOLD_WITHIN;
                 fold->cell = other; /* the first one */
                 cell_centroid(&folds->input.cells, other, fold->place);

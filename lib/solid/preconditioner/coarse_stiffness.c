@@ -65,15 +65,21 @@ static enum status sum_nodes(const struct preconditioner *p, const struct body *
     return failure.status;
 }
 
+/* What the coarse fields are along row r. */
+static void take_row(struct preconditioner *p, const struct constraint_rows *rows, int64_t r)
+{
+    struct average average = constraint_rows_average(rows, r);
+    coarse_rows_clear(&p->rows);
+    coarse_rows_add_average(&p->rows, &average, 1.0, 1, rows->direction + r * p->dim);
+}
+
 /* Springs along rows: penalties, and in place of conditions, which the fields need not meet. stiffness[]: of
  * each; NULL: `usual`. */
 static void add_springs(struct preconditioner *p, const struct constraint_rows *rows, const double *stiffness,
                         double usual)
 {
     for (int64_t r = 0; r < rows->count; r++) {
-        struct average average = constraint_rows_average(rows, r);
-        coarse_rows_clear(&p->rows);
-        coarse_rows_add_average(&p->rows, &average, 1.0, 1, rows->direction + r * p->dim);
+        take_row(p, rows, r);
         coarse_rows_square(&p->rows, 0, stiffness != NULL ? stiffness[r] : usual, &p->profile, p->body);
     }
 }
@@ -105,9 +111,7 @@ enum status preconditioner_assemble(struct preconditioner *p, struct solid_syste
 static void widen_by_rows(struct preconditioner *p, const struct constraint_rows *rows)
 {
     for (int64_t r = 0; r < rows->count; r++) {
-        struct average average = constraint_rows_average(rows, r);
-        coarse_rows_clear(&p->rows);
-        coarse_rows_add_average(&p->rows, &average, 1.0, 1, rows->direction + r * p->dim);
+        take_row(p, rows, r);
         coarse_rows_widen(&p->rows, &p->profile);
     }
 }

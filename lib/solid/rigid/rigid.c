@@ -125,6 +125,16 @@ enum status rigid_build(int dim, int64_t facet_count, const double *corners, boo
     return rigid_grow_tree(surface, error);
 }
 
+enum status rigid_of_facets(int dim, const double *x, int64_t facet_count, const int32_t *facet,
+                            struct rigid_surface *surface, struct error *error)
+{
+    NEW_SCRATCH(double, corners, facet_count * dim * dim, error);
+    for (int64_t k = 0; k < facet_count * dim; k++) {
+        memcpy(corners + k * dim, x + (int64_t)facet[k] * dim, (size_t)dim * sizeof *x);
+    }
+    return rigid_build(dim, facet_count, corners, false, surface, error);
+}
+
 double rigid_width(const struct rigid_surface *surface)
 {
     double middle[3] = {0.0}, spread[9] = {0.0}, value[3], V[9];

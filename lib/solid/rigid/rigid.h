@@ -37,6 +37,9 @@ struct rigid_surface {
  * disagree on the side. */
 MUST_CHECK enum status rigid_build(int dim, int64_t facet_count, const double *corners, bool flip,
                                    struct rigid_surface *surface, struct error *error);
+/* The same of facets facet[facet_count * dim] between nodes x. */
+MUST_CHECK enum status rigid_of_facets(int dim, const double *x, int64_t facet_count, const int32_t *facet,
+                                       struct rigid_surface *surface, struct error *error);
 void rigid_free(struct rigid_surface *surface);
 
 /* About its width, across its length and, in 3D, not the least: how far its vertices spread, m. */
