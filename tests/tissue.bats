@@ -40,6 +40,20 @@ norm() {
     awk 'NR == 1 { right = $1 } { print $1 / right; bad += ($1 / right - 1) ^ 2 > 1e-10 } END { exit bad || NR < 3 }' forces
 }
 
+# Linear: -5.782e-5 by quadratic triangles on two fine meshes; on 3 and 5 nodes across these are 41 and 3.1 % off.
+@test "stiff fibres across a beam of few cells do not lock it" {
+    printf '%s\n' '[scene]' 'dim = 2' 'analysis = quasi-static' '[material all]' 'region = body' 'model = guccione' 'C = 2000' 'bf = 200' \
+        'bt = 1' 'bfs = 1' 'kappa = 1e5' 'fibre = 1, 1' '[displacement a]' 'facets = xmin' 'components = 0, 0' \
+        '[traction t]' 'facets = xmax' 'components = 0, -1e-3' > beam.scene
+    for n in 9,3 17,5; do
+        cloud -d 2 -k regular -n $n --box 0,4,0,1 2> note | shapefn > beam.mts 2>> note
+        mtled beam.scene beam.mts > beam.dat
+        paste <(mts print nodes.x beam.dat) <(mts print u beam.dat) |
+            awk -v most="$([ $n = 9,3 ] && echo .05 || echo .03)" '
+                $1 > 3.999 { sum += $4; n++ } END { off = sum / n / -5.782e-5 - 1; print off; exit !(n > 2 && off * off < most * most) }'
+    done
+}
+
 @test "a table of fibres that is wrong, or leaves a part of the body out, is refused" {
     cloud -d 3 -k regular -n 4 --box -0.5,0.5,-0.5,0.5,0,1 | shapefn > cube.mts 2> note
     block quasi-static | sed 's/dim = 2/dim = 3/; $a[output]\nfibre = yes' > none.scene
@@ -55,7 +69,7 @@ norm() {
     refused 2 'wrong unit or wrong place' mtled f.scene cube.mts
 }
 
-# Eleven groups: 4.15 to 4.17 mm; on this mesh 4.198, on twice as many cells each way 4.176.
+# Eleven groups: 4.15 to 4.17 mm.
 @test "guccione: a beam under a following pressure bends as in the benchmark of Land et al. (2015)" {
     cloud -d 3 -k regular -n 41,5,5 --box 0,0.01,0,0.001,0,0.001 2> note | shapefn > beam.mts 2>> note
     printf '%s\n' '[scene]' 'dim = 3' 'analysis = quasi-static' '[material all]' 'region = body' 'model = guccione' 'C = 2000' \
@@ -63,7 +77,7 @@ norm() {
         '[pressure p]' 'facets = zmin' 'value = 4' > beam.scene
     mtled beam.scene beam.mts > beam.dat
     paste <(mts print nodes.x beam.dat) <(mts print u beam.dat) |
-        awk '$1 > 0.00999 && $2 > 0.00049 && $2 < 0.00051 && $3 > 0.00099 { print $3 + $6; good = ($3 + $6 > 0.00415 && $3 + $6 < 0.00421) } END { exit !good }'
+        awk '$1 > 0.00999 && $2 > 0.00049 && $2 < 0.00051 && $3 > 0.00099 { print $3 + $6; good = ($3 + $6 > 0.00415 && $3 + $6 < 0.00418) } END { exit !good }'
 }
 
 # Incompressible, free: (mu + T) l^3 = mu, and (mu + T) l^4 = mu in plane strain; T is half of it in the first frame.

@@ -40,7 +40,8 @@ static double variance_modulus(const struct material *material, const double F[9
         }
         largest = fmax(largest, sum);
     }
-    return largest * (nodal_volume_modulus(material) + 4.0 / 3.0 * material->shear_modulus);
+    struct variance_moduli moduli = smoothed_cells_moduli(material);
+    return largest * (moduli.bulk + 4.0 / 3.0 * (moduli.shear + moduli.fibre[0] + moduli.fibre[1]));
 }
 
 static struct bound bound_at(const struct body *body, int64_t q, bool rest)

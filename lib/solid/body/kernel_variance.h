@@ -141,8 +141,43 @@ KERNEL_INLINE void vary_gradients(int dim, const lanes h[4][3], const struct var
     }
 }
 
+/* Families of fibres in the cells from q on: see struct variance_fibres. */
+struct lanes_fibres {
+    int count;
+    lanes share[2], direction[2][3];
+};
+
+KERNEL_INLINE void load_fibres(const struct body *body, int64_t q, struct lanes_fibres *fibres)
+{
+    fibres->count = body->cells.fibres != NULL ? 2 : 0;
+    for (int i = 0; i < LANES && fibres->count > 0; i++) {
+        const struct variance_fibres *own = &body->cells.fibres[body->material[q + i]];
+        for (int f = 0; f < fibres->count; f++) {
+            fibres->share[f][i] = own->share[f];
+            for (int a = 0; a < 3; a++) {
+                fibres->direction[f][a][i] = own->direction[f][a];
+            }
+        }
+    }
+}
+
+/* Add to M what the fibre of direction a has of the stress of a strain: along e dev a (x) a, e = a . dev
+ * strain a. */
+KERNEL_INLINE void stress_fibre(int dim, lanes modulus, const lanes a[3], const lanes strain[9], lanes M[9])
+{
+    lanes along = {0.0};
+    for (int k = 0; k < dim * dim; k++) {
+        along += (a[k / dim] * a[k % dim] - (k / dim == k % dim ? 1.0 / 3.0 : 0.0)) * strain[k];
+    }
+    along *= modulus;
+    for (int k = 0; k < dim * dim; k++) {
+        M[k] += (a[k / dim] * a[k % dim] - (k / dim == k % dim ? 1.0 / 3.0 : 0.0)) * along;
+    }
+}
+
 /* M becomes the stress T of the strain sym M; T sym M is added to Q. */
-KERNEL_INLINE void stress_vertex(int dim, lanes shear, lanes bulk, lanes M[9], lanes Q[9])
+KERNEL_INLINE void stress_vertex(int dim, lanes shear, lanes bulk, const struct lanes_fibres *fibres,
+                                 lanes M[9], lanes Q[9])
 {
     lanes strain[9], product[9], trace = M[0];
     for (int a = 1; a < dim; a++) {
@@ -155,6 +190,9 @@ KERNEL_INLINE void stress_vertex(int dim, lanes shear, lanes bulk, lanes M[9], l
     for (int k = 0; k < dim * dim; k++) {
         M[k] = 2.0 * shear * strain[k] + (k / dim == k % dim ? trace : (lanes){0.0});
     }
+    for (int f = 0; f < fibres->count; f++) {
+        stress_fibre(dim, shear * fibres->share[f], fibres->direction[f], strain, M);
+    }
     lanes_product(dim, M, strain, product);
     for (int k = 0; k < dim * dim; k++) {
         Q[k] += product[k];
@@ -165,6 +203,7 @@ KERNEL_INLINE void stress_vertex(int dim, lanes shear, lanes bulk, lanes M[9], l
 KERNEL_INLINE void vary_cells(const struct body *body, int64_t q, int64_t i, int dim, const block_edges edges,
                               const block_vertices vertices, lanes shear, lanes bulk, struct variance *v)
 {
+    struct lanes_fibres fibres;
     lanes grad_N[12], h[4][3], M[4][9], other[3];
     load_matrix(body->F + q, body->point_count, dim, v->F);
     load_offsets(edges, vertices, i, dim, v->offset);
@@ -175,9 +214,10 @@ KERNEL_INLINE void vary_cells(const struct body *body, int64_t q, int64_t i, int
         lanes_apply(dim, false, v->Z, grad_N + 3 * k, h[k]);
     }
     vary_gradients(dim, (const lanes(*)[3])h, v, M);
+    load_fibres(body, q, &fibres);
     memset(v->product, 0, sizeof v->product);
     for (int k = 0; k <= dim; k++) {
-        stress_vertex(dim, shear, bulk, M[k], v->product);
+        stress_vertex(dim, shear, bulk, &fibres, M[k], v->product);
     }
     for (int e = 0; e < CELL_EDGES(dim); e++) {
         int k = cell_edge_ends[e][0], l = cell_edge_ends[e][1];

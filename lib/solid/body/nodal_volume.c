@@ -6,7 +6,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* s by the shear modulus. */
+/* The most of s by the shear modulus. */
 static const double points_part = 2.0;
 /* epsilon in 2D and 3D: the compliance of bubbles in regular cells. */
 static const double stabilisation[] = {1.0 / 5.0, 3.0 / 28.0};
@@ -114,9 +114,14 @@ enum status nodal_volumes_build(const struct body_input *input, struct body *bod
     return NEW_ARRAY(&volumes->pressure, volumes->count, error);
 }
 
+double nodal_volume_part(double modulus, double shear)
+{
+    return fmin(modulus, points_part * shear);
+}
+
 double nodal_volume_modulus(const struct material *material)
 {
-    return fmin(material_bulk(material), points_part * material->shear_modulus);
+    return nodal_volume_part(material_bulk(material), material->shear_modulus);
 }
 
 double nodal_pressure_modulus(const struct material *material)

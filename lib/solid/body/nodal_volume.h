@@ -34,7 +34,9 @@ void nodal_volumes_change(struct body *body, int64_t b);
 /* Set b and pi from J - 1. Called by all threads of a parallel region together. */
 void nodal_volumes_evaluate(struct body *body);
 
-/* The part s of the bulk modulus, Pa. */
+/* The part of a modulus that may act on single cells without locking them, Pa; and s, that of the bulk
+ * modulus. */
+double nodal_volume_part(double modulus, double shear);
 double nodal_volume_modulus(const struct material *material);
 
 /* Pressure p_q at the last evaluation, Pa; negative in compression. */

@@ -56,6 +56,33 @@ static enum status set_face_gradients(struct body *body, struct error *error)
     return STATUS_OK;
 }
 
+struct variance_moduli smoothed_cells_moduli(const struct material *material)
+{
+    struct material_rest rest = material_at_rest(material);
+    struct variance_moduli moduli = {.shear = rest.shear,
+                                     .bulk = nodal_volume_part(material_bulk(material), rest.shear)};
+    for (int f = 0; f < rest.families; f++) {
+        moduli.fibre[f] = nodal_volume_part(rest.fibre[f], rest.shear);
+    }
+    return moduli;
+}
+
+static enum status set_fibres(struct body *body, struct error *error)
+{
+    for (int64_t m = 0; m < body->material_count; m++) {
+        struct material_rest rest = material_at_rest(&body->materials[m]);
+        struct variance_moduli moduli = smoothed_cells_moduli(&body->materials[m]);
+        if (rest.families > 0 && body->cells.fibres == NULL) {
+            RETURN_IF_ERROR(NEW_ARRAY(&body->cells.fibres, body->material_count, error));
+        }
+        for (int f = 0; f < rest.families; f++) {
+            body->cells.fibres[m].share[f] = 3.0 * moduli.fibre[f] / moduli.shear;
+            memcpy(body->cells.fibres[m].direction[f], rest.direction[f], sizeof rest.direction[f]);
+        }
+    }
+    return STATUS_OK;
+}
+
 /* The moduli of the variance in each cell: by its own volume, or in a cell that others are merged with by
  * that of the group, and in those none. */
 static enum status set_variance_moduli(struct body *body, struct error *error)
@@ -65,12 +92,12 @@ static enum status set_variance_moduli(struct body *body, struct error *error)
     RETURN_IF_ERROR(NEW_ARRAY(&smoothed->variance_bulk, body->point_count + BODY_POINT_PADDING, error));
     for (int64_t q = 0; q < body->point_count; q++) {
         int64_t cell = smoothed_cells_group(body, q);
+        struct variance_moduli moduli = smoothed_cells_moduli(&body->materials[body->material[cell]]);
         double volume = VARIANCE_FACTOR(body->dim) * body->weight[q];
-        smoothed->variance_shear[cell] += volume * body->materials[body->material[cell]].shear_modulus;
-        smoothed->variance_bulk[cell] +=
-            volume * nodal_volume_modulus(&body->materials[body->material[cell]]);
+        smoothed->variance_shear[cell] += volume * moduli.shear;
+        smoothed->variance_bulk[cell] += volume * moduli.bulk;
     }
-    return STATUS_OK;
+    return set_fibres(body, error);
 }
 
 enum status smoothed_cells_build(const struct body_input *input, struct body *body, struct error *error)
@@ -93,8 +120,8 @@ void smoothed_cells_free(struct smoothed_cells *smoothed)
 {
     field_averages_free(&smoothed->averages);
     FREE_ALL(smoothed->interpolant, smoothed->offset_stiffness, smoothed->variance_shear,
-             smoothed->variance_bulk, smoothed->linear_gradient, smoothed->group, smoothed->group_end,
-             smoothed->kept);
+             smoothed->variance_bulk, smoothed->fibres, smoothed->linear_gradient, smoothed->group,
+             smoothed->group_end, smoothed->kept);
     *smoothed = (struct smoothed_cells){0};
 }
 

@@ -29,12 +29,26 @@
 #define COUPLING_CURVE 4.0
 
 struct body;
+struct material;
+
+/* The moduli of (10) in a material, Pa: of what would lock cells, kappa and fibres, up to 2 mu. */
+struct variance_moduli {
+    double shear, bulk, fibre[2];
+};
+struct variance_moduli smoothed_cells_moduli(const struct material *material);
+
+/* The families of fibres of a material: three times their modulus by the shear modulus, and their unit
+ * vectors; zeros where there are fewer. */
+struct variance_fibres {
+    double share[2], direction[2][3];
+};
 
 struct smoothed_cells {
     struct field_averages averages;         /* on the edges and at the vertices */
     double *interpolant;                    /* F_h at the last evaluation, as body->F */
     double *variance_shear, *variance_bulk; /* point_count, padded as body->weight: moduli of the energy
                                                within a cell, N m (2D: N) */
+    struct variance_fibres *fibres;         /* material_count; NULL: there are none */
     double *linear_gradient; /* dim * dim rows of as many as there are cells, and BODY_POINT_PADDING more: row
                     (k - 1) dim
                     + b holds component b of the gradient of N_k, k = 1 .. dim, in each cell, 1/m; the

@@ -184,6 +184,18 @@ void stress_limit_stretch(const double F[9], double Z[9])
     }
 }
 
+/* The squares of the isochoric part of the strain M along fibres, times their shares. */
+static double fibre_squares(const struct variance_fibres *fibres, const double M[9])
+{
+    double sum = 0.0, Ma[3];
+    for (int f = 0; f < 2; f++) {
+        transform(M, fibres->direction[f], Ma);
+        double along = vector_dot(3, fibres->direction[f], Ma) - (M[0] + M[4] + M[8]) / 3.0;
+        sum += fibres->share[f] * along * along;
+    }
+    return sum;
+}
+
 double stress_variance_energy(const struct body *body, int64_t q, double *volumetric)
 {
     const struct field_averages *averages = &body->cells.averages;
@@ -215,6 +227,8 @@ double stress_variance_energy(const struct body *body, int64_t q, double *volume
         for (int a = 0; a < 9; a++) {
             squares += M[a] * (M[a] + M[3 * (a % 3) + a / 3]);
         }
+        squares +=
+            body->cells.fibres != NULL ? fibre_squares(&body->cells.fibres[body->material[q]], M) : 0.0;
         traces += (M[0] + M[4] + M[8]) * (M[0] + M[4] + M[8]);
     }
     *volumetric = 0.5 * body->cells.variance_bulk[q] * traces;

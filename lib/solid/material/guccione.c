@@ -3,6 +3,8 @@
 #include "solid/material/law.h"
 #include "solid/material/tensor.h"
 
+#include <string.h>
+
 enum { C, BF, BT, BFS };
 
 /* The parameters are the numbers of the keys, C relative to mu. The tangent has the eigenvalues C (2 bf + bt)
@@ -17,6 +19,16 @@ static double prepare(const struct law_input *input, double *parameters, struct 
     }
     parameters[C] /= mu;
     return mu;
+}
+
+static void rest(const struct material *material, struct material_rest *rest)
+{
+    const double *b = material->parameters;
+    double size = 0.5 * material->shear_modulus * b[C], along = (2.0 * b[BF] + b[BT]) / 3.0;
+    double least = fmin(along, fmin(b[BT], b[BFS]));
+    rest->shear = size * least;
+    rest->fibre[rest->families] = size * (along - least);
+    memcpy(rest->direction[rest->families++], material->fibre, sizeof rest->direction[0]);
 }
 
 /* E, E a and Q. */
@@ -70,5 +82,6 @@ const struct law law_guccione = {.name = "guccione",
                                  .keys = keys,
                                  .has_fibres = true,
                                  .prepare = prepare,
+                                 .rest = rest,
                                  .energy = energy,
                                  .stress = stress};

@@ -32,6 +32,17 @@ static void direction(const struct material *material, int family, double a[3])
     }
 }
 
+static void rest(const struct material *material, struct material_rest *rest)
+{
+    const double *p = material->parameters;
+    double aligned = 1.0 - 3.0 * p[DISPERSION];
+    rest->shear = p[C] * material->shear_modulus;
+    for (rest->families = 0; rest->families < 2; rest->families++) {
+        rest->fibre[rest->families] = 4.0 / 3.0 * p[K1] * aligned * aligned * material->shear_modulus;
+        direction(material, rest->families, rest->direction[rest->families]);
+    }
+}
+
 /* E, where it is positive. */
 static double strain(const struct material *material, double scale, const double F[9], const double a[3])
 {
@@ -82,5 +93,6 @@ const struct law law_holzapfel = {.name = "holzapfel-gasser-ogden",
                                   .slackens = true,
                                   .plane = "gamma",
                                   .prepare = prepare,
+                                  .rest = rest,
                                   .energy = energy,
                                   .stress = stress};

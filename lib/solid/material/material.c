@@ -36,6 +36,15 @@ double material_isochoric_energy(const struct material *material, const double F
     return determinant(F) > 0.0 ? material_laws[material->model]->energy(material, F) : (double)NAN;
 }
 
+struct material_rest material_at_rest(const struct material *material)
+{
+    struct material_rest rest = {.shear = material->shear_modulus};
+    if (material->fibre != NULL && material_laws[material->model]->rest != NULL) {
+        material_laws[material->model]->rest(material, &rest);
+    }
+    return rest;
+}
+
 bool material_is_isochoric(const struct material *material)
 {
     return material_laws[material->model]->volume == LAW_VOLUME_LINEAR;

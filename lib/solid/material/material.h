@@ -40,6 +40,16 @@ double material_wave_modulus(const struct material *material);
 /* U''(1), Pa: 0 for laws without U. */
 double material_bulk(const struct material *material);
 
+/* The energy shear |e|^2 + sum_k 3/2 fibre_k (a_k . e a_k)^2 of small isochoric strains e, with the unit
+ * vectors a_k along the families of fibres: where these begin to be stretched, that of the law. Of guccione
+ * the shear modulus is the least one. */
+struct material_rest {
+    double shear; /* Pa */
+    int families;
+    double fibre[2], direction[2][3]; /* Pa, >= 0 */
+};
+struct material_rest material_at_rest(const struct material *material);
+
 /* W_iso(F). NaN when det F <= 0. */
 double material_isochoric_energy(const struct material *material, const double F[9]);
 

@@ -4,6 +4,8 @@
 #include "solid/material/law.h"
 #include "solid/material/tensor.h"
 
+#include <string.h>
+
 enum { C1, C2, C3, C4, C5, LAMBDA_MAX };
 
 /* The parameters are the numbers of the keys, those in Pa relative to mu. */
@@ -21,6 +23,14 @@ static double prepare(const struct law_input *input, double *parameters, struct 
         parameters[i] = number[i] / (i == C4 || i == LAMBDA_MAX ? 1.0 : mu);
     }
     return mu;
+}
+
+static void rest(const struct material *material, struct material_rest *rest)
+{
+    const double *p = material->parameters;
+    rest->shear = 2.0 * (p[C1] + p[C2]) * material->shear_modulus;
+    rest->fibre[rest->families] = p[C3] * p[C4] / 3.0 * material->shear_modulus;
+    memcpy(rest->direction[rest->families++], material->fibre, sizeof rest->direction[0]);
 }
 
 /* From where on the fibres are straight. */
@@ -87,5 +97,6 @@ const struct law law_trans_iso = {.name = "trans-iso",
                                   .has_fibres = true,
                                   .slackens = true,
                                   .prepare = prepare,
+                                  .rest = rest,
                                   .energy = energy,
                                   .stress = stress};
