@@ -51,6 +51,35 @@ lid() {
     done
 }
 
+@test "a ball that plates hold does not roll onto its facets: the force of an eighth of it; an ellipse turns" {
+    printf 'SetFactory("OpenCASCADE");\nSphere(1) = {0, 0, 0, 10};\nPhysical Volume("body") = {1};\n' > ball.geo
+    gmsh -v 1 -3 -clmin 2.5 -clmax 2.5 ball.geo -o ball.msh
+    nodes -u mm ball.msh 2> note | shapefn > ball.mts 2> note
+    printf -- '-30 -30 -10 30 -30 -10 30 30 -10\n-30 -30 -10 30 30 -10 -30 30 -10\n' > lower.tsv
+    printf -- '-30 -30 10 30 30 10 30 -30 10\n-30 -30 10 -30 30 10 30 30 10\n' > upper.tsv
+    plates() { # SIDE MOTION
+        printf '[contact %s]\nfacets = *\nrigid = %s.tsv\nunit = mm\nside = '"$1"'\n' lower lower upper upper
+        printf 'translation = %s\ncurve = linear\n[output]\nreactions = yes\n' "$2"
+    }
+    { block quasi-static | sed 's/^dim = 2/dim = 3/'; plates front '0, 0, -0.004'; } > z.scene
+    { block quasi-static | sed 's/^dim = 2/dim = 3/'; plates front '-0.004, 0, 0'; } > x.scene
+    for axis in z x; do # two orientations of the mesh
+        mtled "$axis.scene" ball.mts > u.dat
+        rows reactions u.dat | awk -v a="$axis" 'NR == 1 { f = a == "z" ? $3 : $1; print f; exit !(f > 0.0569 && f < 0.0592) }'
+        awk '{ print $3, $1, $2, $6, $4, $5, $9, $7, $8 }' lower.tsv > turned && mv turned lower.tsv
+        awk '{ print $3, $1, $2, $6, $4, $5, $9, $7, $8 }' upper.tsv > turned && mv turned upper.tsv
+    done
+    printf -- '-30 -10\n30 -10\n' > lower.tsv
+    printf -- '30 10\n-30 10\n' > upper.tsv
+    { block quasi-static; plates left '0, -0.004'; } > disc.scene
+    for turn in 0.3 0.6; do
+        printf 'SetFactory("OpenCASCADE");\nDisk(1) = {0, 0, 0, 12, 10};\nRotate {{0, 0, 1}, {0, 0, 0}, %s} {Surface{1};}\nPhysical Surface("body") = {1};\n' "$turn" > ellipse.geo
+        gmsh -v 1 -2 -clmin 2 -clmax 2 ellipse.geo -o ellipse.msh
+        nodes -u mm ellipse.msh 2> note | shapefn 2> note | mtled disc.scene > u.dat
+        rows reactions u.dat | awk 'NR == 1 { print $2; exit !($2 > 9.65 && $2 < 9.85) }' # long axis along the plates
+    done
+}
+
 @test "a rigid surface that is never touched is told" {
     # Beside the body, level with its top.
     lid 'rigid = plate.tsv' 'unit = mm' 'translation = 0, -0.01' 'curve = linear'

@@ -125,9 +125,47 @@ void assembly_complete(struct assembly *input)
                                             .cell_side = input->cell_side};
 }
 
-/* Whether the conditions leave a body, of cells that are connected, free to move as a whole. */
-static enum status find_floating(const struct cells *cells, struct solid_system *system, struct error *error)
+/* The bodies of these nodes are not alike everywhere. */
+static void mark_unlike(const int32_t *body, int64_t count, const int32_t *node, int32_t *alike)
 {
+    for (int64_t i = 0; i < count; i++) {
+        alike[body[node[i]]] = -1;
+    }
+}
+
+/* Find the indifferent rotations of bodies of one material without fibres on which nothing acts but contacts,
+ * conditions and gravity. */
+static enum status find_turns(const struct assembly *input, int32_t count, const int32_t *body,
+                              struct solid_system *system, struct error *error)
+{
+    const struct cells *cells = &input->cells;
+    const struct facet_set all = {input->boundary.count, input->boundary.node};
+    FREED_BY(boundary_averages_free) struct boundary_averages averages = {0};
+    NEW_SCRATCH(int32_t, alike, count, error); /* 1 + the material, 0: none yet */
+    for (int64_t q = 0; q < input->point_count; q++) {
+        const int32_t *node = cells->node + (int64_t)input->point_cell[q] * (cells->dim + 1);
+        int32_t *own = &alike[body[*node]], m = input->materials.of_point[q];
+        *own = (*own == 0 || *own == m + 1) && input->materials.items[m].fibre == NULL ? m + 1 : -1;
+    }
+    for (int64_t i = 0; i < input->load_count; i++) {
+        const struct load *load = &input->loads[i];
+        mark_unlike(body, load->facets.count * cells->dim, load->facets.facet, alike);
+        mark_unlike(body, load->node_count, load->nodes, alike);
+    }
+    for (int64_t i = 0; i < input->membrane_count; i++) {
+        const struct facet_set *set = &input->membranes[i].facets;
+        mark_unlike(body, set->count * cells->dim, set->facet, alike);
+    }
+    RETURN_IF_ERROR(boundary_averages_build(&input->face_table, &all, &averages, error));
+    return system_find_turns(system, count, body, alike, &all, input->face_table.per_face, &averages, error);
+}
+
+/* Whether the conditions leave a body, of cells that are connected, free to move as a whole; and the
+ * rotations of it that statics leaves out. */
+static enum status find_floating(const struct assembly *input, struct solid_system *system,
+                                 struct error *error)
+{
+    const struct cells *cells = &input->cells;
     NEW_SCRATCH(int32_t, body, cells->node_count, error);
     set_join_cells(cells->node_count, cells->count, cells->dim + 1, cells->node, body);
     int32_t count = set_number(cells->node_count, body);
@@ -137,7 +175,9 @@ static enum status find_floating(const struct cells *cells, struct solid_system 
         const struct rigid_modes *of_cell = &modes[body[cells->node[c * (cells->dim + 1)]]];
         system->floats = system->floats || of_cell->translations + of_cell->turns > 0;
     }
-    return STATUS_OK;
+    return system->floats && !input->in_time && !system_has_friction(system)
+               ? find_turns(input, count, body, system, error)
+               : STATUS_OK;
 }
 
 enum status assembly_build(struct assembly *input, struct solid_system *system, struct error *note,
@@ -164,7 +204,7 @@ enum status assembly_build(struct assembly *input, struct solid_system *system, 
     RETURN_IF_ERROR(assembly_add_supports(input, system, error));
     RETURN_IF_ERROR(assembly_add_points(input, system, error));
     RETURN_IF_ERROR(assembly_add_contacts(input, system, error));
-    RETURN_IF_ERROR(system->contact_count > 0 ? find_floating(&input->cells, system, error) : STATUS_OK);
+    RETURN_IF_ERROR(system->contact_count > 0 ? find_floating(input, system, error) : STATUS_OK);
     return system_share_penalties(system, error);
 }
 

@@ -62,8 +62,10 @@ static enum status leave_out_held(const struct solid_system *system, struct coar
 enum status preconditioner_build(struct solid_system *system, bool coarse, struct preconditioner *p,
                                  struct error *error)
 {
-    *p = (struct preconditioner){
-        .dim = system->dim, .node_count = system->node_count, .has_rigid_mode = system->floats};
+    *p = (struct preconditioner){.dim = system->dim,
+                                 .node_count = system->node_count,
+                                 .has_rigid_mode = system->floats,
+                                 .turns = system->turns};
     RETURN_IF_ERROR(system_constrain(system, NULL, &p->constraint, error));
     for (int64_t c = 0; c < system->contact_count; c++) {
         p->contact_node_count += contact_nodes(&system->contacts[c])->count;
@@ -88,6 +90,7 @@ enum status preconditioner_build(struct solid_system *system, bool coarse, struc
     RETURN_IF_ERROR(NEW_ARRAY(&p->stiffness_factor, p->profile.size, error));
     RETURN_IF_ERROR(NEW_ARRAY(&p->weight, p->coarse.count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&p->amount, p->size, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&p->turned, p->turns.column_count, error));
     if (coarse && system_has_inverse(system)) {
         RETURN_IF_ERROR(build_inverse(system, p, error));
     }
@@ -102,7 +105,7 @@ void preconditioner_free(struct preconditioner *p)
     coarse_rows_free(&p->rows);
     profile_free(&p->profile);
     FREE_ALL(p->vector, p->force, p->at_rest, p->rotation, p->stiffness, p->mass, p->body, p->along,
-             p->normal, p->across, p->weight, p->stiffness_factor, p->amount);
+             p->normal, p->across, p->weight, p->stiffness_factor, p->amount, p->turned);
     *p = (struct preconditioner){0};
 }
 
@@ -163,6 +166,21 @@ void preconditioner_project(struct preconditioner *p, double *x)
 {
     constraint_project(&p->constraint, NULL, x);
     constraint_project(&p->constraint, NULL, x);
+    const struct sparse *turns = &p->turns;
+    if (turns->row_count == 0) {
+        return;
+    }
+    memset(p->turned, 0, (size_t)turns->column_count * sizeof *p->turned);
+    for (int64_t r = 0; r < turns->row_count; r++) {
+        for (int64_t i = turns->ptr[r]; i < turns->ptr[r + 1]; i++) {
+            p->turned[turns->idx[i]] += turns->value[i] * x[r];
+        }
+    }
+    for (int64_t r = 0; r < turns->row_count; r++) {
+        for (int64_t i = turns->ptr[r]; i < turns->ptr[r + 1]; i++) {
+            x[r] -= turns->value[i] * p->turned[turns->idx[i]];
+        }
+    }
 }
 
 enum status preconditioner_row_forces(struct preconditioner *p, const double *residual, double *scratch,

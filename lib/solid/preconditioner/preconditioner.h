@@ -30,7 +30,8 @@ struct preconditioner {
     double *mass;                 /* node_count: D, N/m (2D: N/m2); with an inverse factor a number */
     struct inverse_factor factor; /* node_count 0: none */
     double *vector, *force;       /* node_count * dim: scratch */
-    struct constraint constraint; /* P */
+    struct constraint constraint; /* P, */
+    struct sparse turns;          /* and those of the system, which it leaves out; the system's to free */
     struct coarse_space coarse;   /* count 0: none, M = B^-1 */
     int64_t size;                 /* coarse.count * dim: rows and columns of the coarse matrices */
     /* The stiffness along the coarse fields of body, penalties and conditions, and the Cholesky factor of A,
@@ -48,6 +49,7 @@ struct preconditioner {
     bool measured;           /* the stiffness is newer than its factor */
     bool uses_coarse;        /* it exists; else M = B^-1 */
     double *amount;          /* size: scratch */
+    double *turned;          /* a number for each of `turns`: scratch */
 };
 
 /* Allocate; build the coarse fields and the inverse factor for a system. `coarse` false: neither, M = D. */
@@ -71,7 +73,8 @@ MUST_CHECK enum status preconditioner_measure(struct preconditioner *preconditio
  * do, as it may come to rest on any. */
 void preconditioner_follow(struct preconditioner *preconditioner, const struct solid_system *system);
 
-/* x := P x, in two passes: of nearly dependent rows one pass leaves 1e-6 of what it takes. */
+/* x := P x, in two passes: of nearly dependent rows one pass leaves 1e-6 of what it takes. Conditions do not
+ * hold indifferent rotations. */
 void preconditioner_project(struct preconditioner *preconditioner, double *x);
 
 /* acceleration = M^-1 force. */

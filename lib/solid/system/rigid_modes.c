@@ -6,6 +6,7 @@
 #include "base/memory.h"
 #include "base/vector.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -106,6 +107,25 @@ static void hold_rows(struct parts *parts)
     }
 }
 
+/* v[k] = rigid mode k of its part along the normal at the middle of a facet, which is added to those
+ * measured. Returns the size of the facet. */
+static double add_facet(struct parts *parts, const int32_t *node, double *v)
+{
+    int dim = parts->system->dim, modes = mode_count(dim);
+    struct part *part = &parts->part[parts->of_node[node[0]]];
+    double area[3], centre[3], mode[3];
+    face_area_vector(dim, parts->system->X, node, area);
+    double size = vector_length(dim, area);
+    vector_middle(dim, parts->system->X, dim, node, centre);
+    for (int k = 0; k < modes; k++) {
+        rigid_mode(&part->box, k, centre, mode);
+        v[k] = vector_dot(dim, area, mode) / size;
+    }
+    add_square(modes, -0.5 * size, v, part->correlation);
+    part->area += size;
+    return size;
+}
+
 /* Measure the motions of the parts along the normals of curved sides. */
 static enum status measure_curved(struct parts *parts, struct error *error)
 {
@@ -116,21 +136,11 @@ static enum status measure_curved(struct parts *parts, struct error *error)
     NEW_SCRATCH(double, weight, system->node_count, error);
     for (int64_t f = 0; f < sliding->facet_count; f++) {
         const int32_t *node = sliding->facet[f].node;
-        struct part *part = &parts->part[parts->of_node[node[0]]];
-        double area[3], centre[3], mode[3], v[MOST_MODES];
-        face_area_vector(dim, system->X, node, area);
-        double size = vector_length(dim, area);
-        vector_middle(dim, system->X, dim, node, centre);
-        for (int k = 0; k < modes; k++) {
-            rigid_mode(&part->box, k, centre, mode);
-            v[k] = vector_dot(dim, area, mode) / size;
-        }
-        add_square(modes, -0.5 * size, v, part->correlation);
+        double v[MOST_MODES], size = add_facet(parts, node, v);
         for (int k = 0; k < dim; k++) {
             add_scaled(modes, size / dim, v, sum + (int64_t)node[k] * modes);
             weight[node[k]] += size / dim;
         }
-        part->area += size;
     }
     for (int64_t n = 0; n < system->node_count; n++) {
         if (weight[n] > 0.0) {
@@ -213,37 +223,161 @@ static void parts_free(struct parts *parts)
     free(parts->part);
 }
 
-/* On curved sides facets approximate the surface: a motion along it has values on them that are not 0 but
- * change their sign from facet to facet. Such a motion is free: more than half of the mean square of its
- * values vanishes where the values of facets that meet are averaged. */
-enum status system_rigid_modes(const struct solid_system *system, int32_t part_count, const int32_t *part,
-                               struct rigid_modes *modes, struct error *error)
+/* Keep the motions of a part along its curved facets, or its whole surface. Facets approximate a surface: a
+ * motion along it has values on them that are not 0 but change their sign from facet to facet. Such a motion
+ * is free: more than half of the mean square of its values vanishes where the values of facets that meet are
+ * averaged. */
+static void keep_along(int modes, struct part *part)
 {
-    FREED_BY(parts_free) struct parts parts = {.system = system, .of_node = part};
+    if (part->area > 0.0) {
+        keep_free(modes, part, part->correlation, least_value * least_value * part->area);
+    }
+}
+
+/* Find the parts and their free motions. */
+static enum status find_free(struct parts *parts, int32_t part_count, struct error *error)
+{
+    const struct solid_system *system = parts->system;
     int dim = system->dim, count = mode_count(dim);
-    RETURN_IF_ERROR(NEW_ARRAY(&parts.part, part_count, error));
-    memset(modes, 0, (size_t)part_count * sizeof *modes);
+    RETURN_IF_ERROR(NEW_ARRAY(&parts->part, part_count, error));
     for (int32_t p = 0; p < part_count; p++) {
-        parts.part[p].box = box_of(dim, 0, NULL);
+        parts->part[p].box = box_of(dim, 0, NULL);
     }
     for (int64_t n = 0; n < system->node_count; n++) {
-        box_add(&parts.part[part[n]].box, 1, system->X + n * dim);
+        box_add(&parts->part[parts->of_node[n]].box, 1, system->X + n * dim);
     }
-    hold_rows(&parts);
-    RETURN_IF_ERROR(measure_curved(&parts, error));
+    hold_rows(parts);
+    RETURN_IF_ERROR(measure_curved(parts, error));
     for (int32_t p = 0; p < part_count; p++) {
-        struct part *own = &parts.part[p];
+        struct part *own = &parts->part[p];
         for (own->count = 0; own->count < count; own->count++) {
             own->basis[own->count][own->count] = 1.0;
         }
         keep_free(count, own, own->held, least_value * least_value);
-        if (own->area > 0.0) {
-            keep_free(count, own, own->correlation, least_value * least_value * own->area);
+        keep_along(count, own);
+    }
+    return STATUS_OK;
+}
+
+enum status system_rigid_modes(const struct solid_system *system, int32_t part_count, const int32_t *part,
+                               struct rigid_modes *modes, struct error *error)
+{
+    FREED_BY(parts_free) struct parts parts = {.system = system, .of_node = part};
+    memset(modes, 0, (size_t)part_count * sizeof *modes);
+    RETURN_IF_ERROR(find_free(&parts, part_count, error));
+    for (int32_t p = 0; p < part_count; p++) {
+        for (int a = 0; a < system->dim; a++) {
+            modes[p].centre[a] = middle(&parts.part[p].box, a);
         }
-        for (int a = 0; a < dim; a++) {
-            modes[p].centre[a] = middle(&own->box, a);
+        split_modes(system->dim, &parts.part[p], &modes[p]);
+    }
+    return STATUS_OK;
+}
+
+/* Measure the motions of the parts along their whole surface instead. At a sharp edge the facets of either
+ * side have an average of their own. */
+static enum status measure_surface(struct parts *parts, int32_t part_count, const struct facet_set *surface,
+                                   int per_face, const struct boundary_averages *averages,
+                                   struct error *error)
+{
+    int dim = parts->system->dim, modes = mode_count(dim);
+    NEW_SCRATCH(double, v, surface->count * modes, error);
+    for (int32_t p = 0; p < part_count; p++) {
+        memset(parts->part[p].correlation, 0, sizeof parts->part[p].correlation);
+        parts->part[p].area = 0.0;
+    }
+    for (int64_t f = 0; f < surface->count; f++) {
+        add_facet(parts, surface->facet + f * dim, v + f * modes);
+    }
+    for (int64_t a = 0; a < averages->count; a++) {
+        double mean[MOST_MODES] = {0.0};
+        for (int64_t s = averages->sample_ptr[a]; s < averages->sample_ptr[a + 1]; s++) {
+            add_scaled(modes, averages->sample_share[s], v + averages->sample_point[s] / per_face * modes,
+                       mean);
         }
-        split_modes(dim, own, &modes[p]);
+        add_square(modes, averages->area[a], mean,
+                   parts->part[parts->of_node[averages->node[a]]].correlation);
+    }
+    return STATUS_OK;
+}
+
+/* Make the motions of a part orthonormal by the products of the rigid modes; those that depend on others
+ * become 0. */
+static void orthonormalise(int modes, const double *square, struct part *part)
+{
+    for (int k = 0; k < part->count; k++) {
+        for (int i = 0; i <= k; i++) {
+            double product = 0.0;
+            for (int m = 0; m < modes; m++) {
+                product += part->basis[k][m] * vector_dot(modes, square + m * modes, part->basis[i]);
+            }
+            double factor = i < k ? -product : product > DBL_EPSILON ? 1.0 / sqrt(product) - 1.0 : -1.0;
+            add_scaled(modes, factor, part->basis[i], part->basis[k]);
+        }
+    }
+}
+
+/* Keep of the free motions of a part those along its surface; each with what it needs of the others to be
+ * orthogonal, at the nodes, to all that turn about no axis of these. */
+static void keep_turns(const struct parts *parts, int32_t p)
+{
+    const struct solid_system *system = parts->system;
+    int dim = system->dim, modes = mode_count(dim);
+    struct part *part = &parts->part[p], all = *part;
+    double square[MOST_MODES * MOST_MODES] = {0.0}, mode[MOST_MODES][3];
+    keep_along(modes, part);
+    if (part->count == 0) {
+        return;
+    }
+    for (int64_t n = 0; n < system->node_count; n++) {
+        for (int k = 0; k < modes && parts->of_node[n] == p; k++) {
+            rigid_mode(&part->box, k, system->X + n * dim, mode[k]);
+        }
+        for (int i = 0; i < modes * modes && parts->of_node[n] == p; i++) {
+            square[i] += vector_dot(dim, mode[i / modes], mode[i % modes]);
+        }
+    }
+    orthonormalise(modes, square, &all);
+    for (int k = 0; k < part->count; k++) {
+        double turn[MOST_MODES] = {0.0};
+        for (int i = 0; i < all.count; i++) {
+            double share = vector_dot(modes - dim, all.basis[i] + dim, part->basis[k] + dim);
+            add_scaled(modes, share, all.basis[i], turn);
+        }
+        memcpy(part->basis[k], turn, sizeof turn);
+    }
+    orthonormalise(modes, square, part);
+}
+
+enum status system_find_turns(struct solid_system *system, int32_t part_count, const int32_t *part,
+                              const int32_t *alike, const struct facet_set *surface, int per_face,
+                              const struct boundary_averages *averages, struct error *error)
+{
+    FREED_BY(parts_free) struct parts parts = {.system = system, .of_node = part};
+    struct sparse *turns = &system->turns;
+    int dim = system->dim, modes = mode_count(dim);
+    NEW_SCRATCH(int32_t, first, part_count + 1, error);
+    RETURN_IF_ERROR(find_free(&parts, part_count, error));
+    RETURN_IF_ERROR(measure_surface(&parts, part_count, surface, per_face, averages, error));
+    for (int32_t p = 0; p < part_count; p++) {
+        parts.part[p].count *= alike[p] > 0;
+        keep_turns(&parts, p);
+        first[p + 1] = first[p] + parts.part[p].count;
+    }
+    int64_t rows = first[part_count] > 0 ? system->node_count * dim : 0, at = 0;
+    RETURN_IF_ERROR(sparse_new(rows, first[part_count], rows * (modes - dim), turns, error));
+    for (int64_t r = 0; r < rows; r++) {
+        const struct part *own = &parts.part[part[r / dim]];
+        for (int k = 0; k < own->count; k++) {
+            turns->idx[at] = first[part[r / dim]] + k;
+            for (int m = 0; m < modes; m++) {
+                double mode[3];
+                rigid_mode(&own->box, m, system->X + r / dim * dim, mode);
+                turns->value[at] += own->basis[k][m] * mode[r % dim];
+            }
+            at++;
+        }
+        turns->ptr[r + 1] = at;
     }
     return STATUS_OK;
 }

@@ -34,6 +34,7 @@ void system_free(struct solid_system *system)
              system->lumped_mass, system->dashpot, system->factor);
     constraint_rows_free(&system->rows);
     sliding_free(&system->sliding);
+    sparse_free(&system->turns);
     constraint_rows_free(&system->penalties.rows);
     constraint_nodes_free(&system->penalties.nodes);
     FREE_ALL(system->penalties.stiffness, system->penalties.unit, system->penalties.volume,

@@ -2,6 +2,7 @@
  * parameters of its nodes. */
 #pragma once
 
+#include "base/sparse.h"
 #include "solid/body/body.h"
 #include "solid/constraint/constraint.h"
 #include "solid/contact/contact.h"
@@ -90,6 +91,8 @@ struct solid_system {
     struct constraint_rows rows;
     struct sliding sliding;             /* those of the rows along the normals of curved sides */
     const struct condition *conditions; /* of the rows, for messages; the caller's; NULL: not known */
+    struct sparse turns;                /* node_count * dim rows: orthonormal motions that statics leaves out,
+                                           indifferent rotations (rigid_modes.h); no rows: none */
     struct penalties penalties;
     struct load_curve *curves;
     int64_t curve_count;
