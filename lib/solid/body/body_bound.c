@@ -41,7 +41,8 @@ static double variance_modulus(const struct material *material, const double F[9
         largest = fmax(largest, sum);
     }
     struct variance_moduli moduli = smoothed_cells_moduli(material);
-    return largest * (moduli.bulk + 4.0 / 3.0 * (moduli.shear + moduli.fibre[0] + moduli.fibre[1]));
+    double fibres = fmax(moduli.fibre[0], 0.0) + fmax(moduli.fibre[1], 0.0);
+    return largest * (moduli.bulk + 4.0 / 3.0 * (fmax(moduli.shear, moduli.along) + fibres));
 }
 
 static struct bound bound_at(const struct body *body, int64_t q, bool rest)

@@ -144,7 +144,7 @@ KERNEL_INLINE void vary_gradients(int dim, const lanes h[4][3], const struct var
 /* Families of fibres in the cells from q on: see struct variance_fibres. */
 struct lanes_fibres {
     int count;
-    lanes share[2], direction[2][3];
+    lanes share[2], turned[2], direction[2][3];
 };
 
 KERNEL_INLINE void load_fibres(const struct body *body, int64_t q, struct lanes_fibres *fibres)
@@ -154,6 +154,7 @@ KERNEL_INLINE void load_fibres(const struct body *body, int64_t q, struct lanes_
         const struct variance_fibres *own = &body->cells.fibres[body->material[q + i]];
         for (int f = 0; f < fibres->count; f++) {
             fibres->share[f][i] = own->share[f];
+            fibres->turned[f][i] = own->turned[f];
             for (int a = 0; a < 3; a++) {
                 fibres->direction[f][a][i] = own->direction[f][a];
             }
@@ -161,17 +162,22 @@ KERNEL_INLINE void load_fibres(const struct body *body, int64_t q, struct lanes_
     }
 }
 
-/* Add to M what the fibre of direction a has of the stress of a strain: along e dev a (x) a, e = a . dev
- * strain a. */
-KERNEL_INLINE void stress_fibre(int dim, lanes modulus, const lanes a[3], const lanes strain[9], lanes M[9])
+/* Add to M what fibres of direction a have of the stress of a strain e: share d dev a (x) a, d = a . dev e a,
+ * and turned (e a (x) a + a (x) e a - 2 (a . e a) a (x) a). */
+KERNEL_INLINE void stress_fibre(int dim, lanes share, lanes turned, const lanes a[3], const lanes strain[9],
+                                lanes M[9])
 {
-    lanes along = {0.0};
-    for (int k = 0; k < dim * dim; k++) {
-        along += (a[k / dim] * a[k % dim] - (k / dim == k % dim ? 1.0 / 3.0 : 0.0)) * strain[k];
+    lanes ea[3], along = {0.0}, trace = {0.0};
+    lanes_apply(dim, false, strain, a, ea);
+    for (int k = 0; k < dim; k++) {
+        along += a[k] * ea[k];
+        trace += strain[k * dim + k];
     }
-    along *= modulus;
+    lanes dev = share * (along - trace * (1.0 / 3.0));
     for (int k = 0; k < dim * dim; k++) {
-        M[k] += (a[k / dim] * a[k % dim] - (k / dim == k % dim ? 1.0 / 3.0 : 0.0)) * along;
+        int r = k / dim, c = k % dim;
+        M[k] += dev * (a[r] * a[c] - (r == c ? 1.0 / 3.0 : 0.0)) +
+                turned * (ea[r] * a[c] + a[r] * ea[c] - 2.0 * along * a[r] * a[c]);
     }
 }
 
@@ -191,7 +197,8 @@ KERNEL_INLINE void stress_vertex(int dim, lanes shear, lanes bulk, const struct 
         M[k] = 2.0 * shear * strain[k] + (k / dim == k % dim ? trace : (lanes){0.0});
     }
     for (int f = 0; f < fibres->count; f++) {
-        stress_fibre(dim, shear * fibres->share[f], fibres->direction[f], strain, M);
+        stress_fibre(dim, shear * fibres->share[f], shear * fibres->turned[f], fibres->direction[f], strain,
+                     M);
     }
     lanes_product(dim, M, strain, product);
     for (int k = 0; k < dim * dim; k++) {

@@ -60,9 +60,10 @@ struct variance_moduli smoothed_cells_moduli(const struct material *material)
 {
     struct material_rest rest = material_at_rest(material);
     struct variance_moduli moduli = {.shear = rest.shear,
-                                     .bulk = nodal_volume_part(material_bulk(material), rest.shear)};
+                                     .along = rest.along,
+                                     .bulk = nodal_volume_part(material_bulk(material), rest.along)};
     for (int f = 0; f < rest.families; f++) {
-        moduli.fibre[f] = nodal_volume_part(rest.fibre[f], rest.shear);
+        moduli.fibre[f] = nodal_volume_part(rest.fibre[f], rest.along);
     }
     return moduli;
 }
@@ -77,6 +78,7 @@ static enum status set_fibres(struct body *body, struct error *error)
         }
         for (int f = 0; f < rest.families; f++) {
             body->cells.fibres[m].share[f] = 3.0 * moduli.fibre[f] / moduli.shear;
+            body->cells.fibres[m].turned[f] = 2.0 * (moduli.along - moduli.shear) / moduli.shear;
             memcpy(body->cells.fibres[m].direction[f], rest.direction[f], sizeof rest.direction[f]);
         }
     }

@@ -31,16 +31,17 @@
 struct body;
 struct material;
 
-/* The moduli of (10) in a material, Pa: of what would lock cells, kappa and fibres, up to 2 mu. */
+/* The moduli of (10) in a material, Pa: of what would lock cells, kappa and fibres, up to twice the shear
+ * modulus along fibres. */
 struct variance_moduli {
-    double shear, bulk, fibre[2];
+    double shear, along, bulk, fibre[2];
 };
 struct variance_moduli smoothed_cells_moduli(const struct material *material);
 
-/* The families of fibres of a material: three times their modulus by the shear modulus, and their unit
- * vectors; zeros where there are fewer. */
+/* The families of fibres of a material: by the shear modulus, three times their modulus, and twice the
+ * difference of that along them; and their unit vectors; zeros where there are fewer. */
 struct variance_fibres {
-    double share[2], direction[2][3];
+    double share[2], turned[2], direction[2][3];
 };
 
 struct smoothed_cells {

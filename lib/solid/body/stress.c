@@ -184,14 +184,18 @@ void stress_limit_stretch(const double F[9], double Z[9])
     }
 }
 
-/* The squares of the isochoric part of the strain M along fibres, times their shares. */
+/* What fibres add to the squares of a strain sym M. */
 static double fibre_squares(const struct variance_fibres *fibres, const double M[9])
 {
     double sum = 0.0, Ma[3];
     for (int f = 0; f < 2; f++) {
-        transform(M, fibres->direction[f], Ma);
-        double along = vector_dot(3, fibres->direction[f], Ma) - (M[0] + M[4] + M[8]) / 3.0;
-        sum += fibres->share[f] * along * along;
+        const double *a = fibres->direction[f];
+        for (int i = 0; i < 3; i++) {
+            Ma[i] = 0.5 * (vector_dot(3, M + 3 * i, a) + M[i] * a[0] + M[i + 3] * a[1] + M[i + 6] * a[2]);
+        }
+        double along = vector_dot(3, a, Ma), dev = along - (M[0] + M[4] + M[8]) / 3.0;
+        sum +=
+            fibres->share[f] * dev * dev + 2.0 * fibres->turned[f] * (vector_dot(3, Ma, Ma) - along * along);
     }
     return sum;
 }

@@ -190,8 +190,8 @@ static void space_free(struct space *space)
     gsl_matrix_free(space->H);
 }
 
-/* Whether u is unstable, from the least eigenvalue, or with a symmetric K the least quotient. Contacts make K
- * look less symmetric than it is, where they open or close. */
+/* Whether u is unstable, from the least eigenvalue, or with a symmetric K the least quotient. Contacts that
+ * open or close, and fibres that slacken, make K look less symmetric than it is. */
 static bool is_unstable(struct newton *n, const struct space *space, double least)
 {
     bool symmetric = space->skew < asymmetric, negative = space->least < 0.0;
@@ -199,7 +199,8 @@ static bool is_unstable(struct newton *n, const struct space *space, double leas
     if (!negative || !(least < most) || !(symmetric || space->searched)) {
         return false;
     }
-    return (!symmetric && n->system->contact_count == 0) || is_negative(n, space->where);
+    bool follows = n->system->contact_count == 0 && !system_has_potential(n->system);
+    return (!symmetric && follows) || is_negative(n, space->where);
 }
 
 enum status newton_judge_stability(struct newton *n, struct error *error)

@@ -24,10 +24,10 @@ static double prepare(const struct law_input *input, double *parameters, struct 
 static void rest(const struct material *material, struct material_rest *rest)
 {
     const double *b = material->parameters;
-    double size = 0.5 * material->shear_modulus * b[C], along = (2.0 * b[BF] + b[BT]) / 3.0;
-    double least = fmin(along, fmin(b[BT], b[BFS]));
-    rest->shear = size * least;
-    rest->fibre[rest->families] = size * (along - least);
+    double half = 0.5 * material->shear_modulus * b[C];
+    rest->shear = half * b[BT];
+    rest->along = half * b[BFS];
+    rest->fibre[rest->families] = 2.0 / 3.0 * half * (b[BF] - b[BT]);
     memcpy(rest->direction[rest->families++], material->fibre, sizeof rest->direction[0]);
 }
 

@@ -36,7 +36,7 @@ static void rest(const struct material *material, struct material_rest *rest)
 {
     const double *p = material->parameters;
     double aligned = 1.0 - 3.0 * p[DISPERSION];
-    rest->shear = p[C] * material->shear_modulus;
+    rest->shear = rest->along = p[C] * material->shear_modulus;
     for (rest->families = 0; rest->families < 2; rest->families++) {
         rest->fibre[rest->families] = 4.0 / 3.0 * p[K1] * aligned * aligned * material->shear_modulus;
         direction(material, rest->families, rest->direction[rest->families]);

@@ -38,7 +38,8 @@ double material_isochoric_energy(const struct material *material, const double F
 
 struct material_rest material_at_rest(const struct material *material)
 {
-    struct material_rest rest = {.shear = material->shear_modulus};
+    double mu = material->shear_modulus;
+    struct material_rest rest = {.shear = mu, .along = mu};
     if (material->fibre != NULL && material_laws[material->model]->rest != NULL) {
         material_laws[material->model]->rest(material, &rest);
     }

@@ -40,13 +40,13 @@ double material_wave_modulus(const struct material *material);
 /* U''(1), Pa: 0 for laws without U. */
 double material_bulk(const struct material *material);
 
-/* The energy shear |e|^2 + sum_k 3/2 fibre_k (a_k . e a_k)^2 of small isochoric strains e, with the unit
- * vectors a_k along the families of fibres: where these begin to be stretched, that of the law. Of guccione
- * the shear modulus is the least one. */
+/* The energy of small isochoric strains e where fibres begin to be stretched, with the unit vectors a_k along
+ * their families: shear |e|^2 + sum_k (2 (along - shear) (|e a_k|^2 - (a_k . e a_k)^2) + 3/2 fibre_k (a_k . e
+ * a_k)^2). */
 struct material_rest {
-    double shear; /* Pa */
+    double shear, along; /* shear moduli across the fibres and along them, Pa */
     int families;
-    double fibre[2], direction[2][3]; /* Pa, >= 0 */
+    double fibre[2], direction[2][3]; /* Pa */
 };
 struct material_rest material_at_rest(const struct material *material);
 

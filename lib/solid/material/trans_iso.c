@@ -28,7 +28,7 @@ static double prepare(const struct law_input *input, double *parameters, struct 
 static void rest(const struct material *material, struct material_rest *rest)
 {
     const double *p = material->parameters;
-    rest->shear = 2.0 * (p[C1] + p[C2]) * material->shear_modulus;
+    rest->shear = rest->along = 2.0 * (p[C1] + p[C2]) * material->shear_modulus;
     rest->fibre[rest->families] = p[C3] * p[C4] / 3.0 * material->shear_modulus;
     memcpy(rest->direction[rest->families++], material->fibre, sizeof rest->direction[0]);
 }
