@@ -187,3 +187,31 @@ halves() {
         on && NF { $0 = int(k++ * 0.6180339887 * 97) % 2 }
         { print }' | ipoints | support | shapefn | mts check
 }
+
+# A layer that is 1000 times as stiff, with two cells across, each a quarter as thick as long, within a body; its ends are moved along each other.
+@test "a thin stiff layer within a soft body: as alone, its supports are as flat as its cells" {
+    cloud -d 2 -k regular -n 17,11 --box 0,2,0,1 | mts text | awk '
+        BEGIN { split("0 0.125 0.25 0.375 0.5 0.53 0.56 0.67 0.78 0.89 1", level, " ") }
+        /^# / { on = $2 == "nodes.x" }
+        on && /^[0-9]/ { $2 = level[int($2 * 10 + 1.5)] }
+        { print }' | tag -r 'layer=box:0,0.5,2,0.56' > body.mts 2> note
+    for material in body:1 layer:1000; do
+        IFS=: read -r name times <<< "$material"
+        printf '[material %s]\nregion = %s\nmu = %s\nkappa = %s\n' "$name" "$name" $((1000 * times)) $((10000 * times))
+    done > body.scene
+    cat >> body.scene <<'END'
+[scene]
+dim = 2
+analysis = quasi-static
+[displacement held]
+facets = xmin
+components = 0, 0
+[displacement moved]
+facets = xmax
+components = 0, 0.01
+[output]
+reactions = yes
+END
+    # Quadratic triangles with linear pressures (Taylor and Hood): 3.6824, 3.5976, 3.5608, 3.5474 N/m with 1, 2, 4, 8 across the layer.
+    mtled -q body.scene body.mts 2> note | mts print reactions - | awk 'NR == 2 { exit !(($2 / 3.547 - 1) ^ 2 < 0.05 ^ 2) }'
+}

@@ -18,8 +18,7 @@ enum status stage_radii(const struct stream *stream, const struct support_option
     NEW_SCRATCH(double, spacing, node_count, error);
     RETURN_IF_ERROR(stream_cells(stream, false, &cells, error));
     if (options->radius <= 0.0) { /* the local spacing */
-        RETURN_IF_ERROR(cells.count > 0 ? support_stretch(&cells, stretch, error) : STATUS_OK);
-        RETURN_IF_ERROR(cells.count > 0 ? support_spacing(&cells, *stretch, spacing, error)
+        RETURN_IF_ERROR(cells.count > 0 ? support_sizes(&cells, options->side, stretch, spacing, error)
                                         : nodes_spacing(options->mls.dim, node_count, x, spacing, error));
     }
     return support_radii(options, node_count, spacing, radius, error);

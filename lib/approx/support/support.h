@@ -48,14 +48,18 @@ MUST_CHECK enum status nodes_spacing(int dim, int64_t node_count, const double *
  * longer where the cells around the node are: T is the mean of x (x) x over the edges of these cells, with
  * eigenvalues t_1 >= t_i. A has the eigenvectors of T, and the squares of its eigenvalues are max(1, t_1 /
  * t_i - 3 dim + 1), at most those of supports that are 32 times as long as wide. Of a lattice of cubes that
- * are cut along one diagonal t_1 / t_i is 4, in 2D 3. NULL where all A are 1. */
-MUST_CHECK enum status support_stretch(const struct cells *cells, double **stretch, struct error *error);
-
-/* spacing[node_count], m, by which the radii of these supports are set: that of the cells in lengths |A
+ * are cut along one diagonal t_1 / t_i is 4, in 2D 3. NULL where all A are 1.
+ *
+ * spacing[node_count], m, by which the radii of these supports are set: that of the cells in lengths |A
  * edge|, and a little more where A is not 1. A flat lattice becomes one of equilateral triangles, whose
- * second neighbours, at 3^(1/2) spacings, must not be just outside of supports of 1.8. */
-MUST_CHECK enum status support_spacing(const struct cells *cells, const double *stretch, double *spacing,
-                                       struct error *error);
+ * second neighbours, at 3^(1/2) spacings, must not be just outside of supports of 1.8.
+ *
+ * side[cells->count], or NULL: at an interface where supports stop, and where the cells of a side are flat,
+ * those of the flattest side count alone: a layer within a body has the supports that it has alone. Another
+ * side needs the node's support as it is, for all cells, unless within two edges of the node it has one that
+ * is two edges from all interfaces: as the core between two skins, of two cells across. */
+MUST_CHECK enum status support_sizes(const struct cells *cells, const int32_t *side, double **stretch,
+                                     double *spacing, struct error *error);
 
 /* radius[node_count], m, from the options and the local spacing. */
 MUST_CHECK enum status support_radii(const struct support_options *options, int64_t node_count,

@@ -3,11 +3,13 @@
 #include "approx/cells/face_edges.h"
 #include "base/box.h"
 #include "base/eigen.h"
+#include "base/lists.h"
 #include "base/memory.h"
 #include "base/round_off.h"
 #include "base/vector.h"
 
 #include <math.h>
+#include <string.h>
 
 enum status nodes_spacing(int dim, int64_t node_count, const double *x, double *spacing, struct error *error)
 {
@@ -85,34 +87,151 @@ static bool set_stretch(int dim, double *A)
     return flat;
 }
 
-enum status support_stretch(const struct cells *cells, double **stretch, struct error *error)
+/* stretch[node_count * dim * dim], zero: A of the nodes; *any: whether some are not 1. */
+static void stretch_of(const struct cells *cells, double *stretch, bool *any)
 {
-    int64_t size = (int64_t)cells->dim * cells->dim;
-    bool any = false;
-    *stretch = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(stretch, cells->node_count * size, error));
-    sum_edges(cells, *stretch);
+    *any = false;
+    sum_edges(cells, stretch);
     for (int64_t n = 0; n < cells->node_count; n++) {
-        any = set_stretch(cells->dim, *stretch + n * size) || any;
+        *any = set_stretch(cells->dim, stretch + n * cells->dim * cells->dim) || *any;
     }
-    if (!any) {
-        FREE_ALL(*stretch);
-        *stretch = NULL;
+}
+
+static double trace(int dim, const double *A)
+{
+    return A[0] + A[dim + 1] + (dim == 3 ? A[8] : 0.0);
+}
+
+static enum status spacing_of(const struct cells *cells, const double *stretch, double *spacing,
+                              struct error *error)
+{
+    int dim = cells->dim;
+    RETURN_IF_ERROR(cells_node_spacing(cells, stretch, spacing, error));
+    for (int64_t n = 0; n < cells->node_count; n++) {
+        spacing[n] *= 1.0 + stretched_more * (1.0 - dim / trace(dim, stretch + n * dim * dim));
     }
     return STATUS_OK;
 }
 
-enum status support_spacing(const struct cells *cells, const double *stretch, double *spacing,
-                            struct error *error)
+/* node[cells->count * (dim + 1)]: the cells by sides, each side with nodes 0 .. *count - 1 of its own; of[]:
+ * of each of these the node of the body. */
+static enum status part_sides(const struct cells *cells, const int32_t *side, int32_t *node, int32_t *of,
+                              int64_t *count, struct error *error)
 {
-    int dim = cells->dim;
-    RETURN_IF_ERROR(cells_node_spacing(cells, stretch, spacing, error));
-    for (int64_t n = 0; n < cells->node_count && stretch != NULL; n++) {
-        double trace = 0.0;
-        for (int a = 0; a < dim; a++) {
-            trace += stretch[(n * dim + a) * dim + a];
+    SCRATCH int64_t *ptr = NULL;
+    SCRATCH int32_t *idx = NULL;
+    int64_t sides = 0, corners = cells->dim + 1;
+    NEW_SCRATCH(int32_t, last, cells->node_count, error); /* of the nodes made, of each node, from 1 */
+    for (int64_t c = 0; c < cells->count; c++) {
+        sides = side[c] >= sides ? side[c] + 1 : sides;
+    }
+    RETURN_IF_ERROR(lists_by_row(cells->count, 1, side, sides, &ptr, &idx, error));
+    *count = 0;
+    for (int64_t s = 0; s < sides; s++) {
+        int64_t before = *count;
+        for (int64_t i = ptr[s] * corners; i < ptr[s + 1] * corners; i++) {
+            int32_t n = cells->node[idx[i / corners] * corners + i % corners];
+            if (last[n] <= before) {
+                of[(*count)++] = n;
+                last[n] = (int32_t)*count;
+            }
+            node[i] = last[n] - 1;
         }
-        spacing[n] *= 1.0 + stretched_more * (1.0 - dim / trace);
+    }
+    return STATUS_OK;
+}
+
+/* distance[]: 0 at some nodes, elsewhere more than `most`; to others up to `most` edges away, how many. */
+static void spread(const struct cells *cells, int32_t most, int32_t *distance)
+{
+    for (int32_t d = 1; d <= most; d++) {
+        for (int64_t c = 0; c < cells->count; c++) {
+            const int32_t *v = cells->node + c * (cells->dim + 1);
+            bool reached = false;
+            for (int k = 0; k <= cells->dim; k++) {
+                reached = reached || distance[v[k]] == d - 1;
+            }
+            for (int k = 0; k <= cells->dim && reached; k++) {
+                distance[v[k]] = distance[v[k]] > d ? d : distance[v[k]];
+            }
+        }
+    }
+}
+
+/* How many sides need each node of the body, needed[], zero: those on which no node within two edges of it is
+ * itself two edges from all interfaces. They have too few nodes of their own to do with less of its support.
+ * distance[] of the nodes on sides: more than 2 where they are needed. */
+static void find_needed(const struct cells *parted, const int32_t *of, int32_t *needed, int32_t *distance)
+{
+    for (int64_t i = 0; i < parted->node_count; i++) {
+        needed[of[i]]++;
+    }
+    for (int64_t i = 0; i < parted->node_count; i++) {
+        distance[i] = needed[of[i]] > 1 ? 0 : 3;
+    }
+    spread(parted, 1, distance);
+    for (int64_t i = 0; i < parted->node_count; i++) {
+        distance[i] = distance[i] <= 1 ? 3 : 0;
+        needed[of[i]] = 0;
+    }
+    spread(parted, 2, distance);
+    for (int64_t i = 0; i < parted->node_count; i++) {
+        needed[of[i]] += distance[i] > 2;
+    }
+}
+
+/* Where cells of some side are flat at a node that the other sides do not need, take A and the spacing that
+ * the flattest side alone has. */
+static enum status take_flattest(const struct cells *cells, const int32_t *side, double *stretch,
+                                 double *spacing, bool *any, struct error *error)
+{
+    int dim = cells->dim, size = dim * dim;
+    struct cells parted = *cells;
+    bool flat;
+    NEW_SCRATCH(int32_t, node, cells->count * (dim + 1), error);
+    NEW_SCRATCH(int32_t, of, cells->count * (dim + 1), error);
+    RETURN_IF_ERROR(part_sides(cells, side, node, of, &parted.node_count, error));
+    NEW_SCRATCH(double, x, parted.node_count * dim, error);
+    NEW_SCRATCH(double, A, parted.node_count * size, error);
+    NEW_SCRATCH(double, own, parted.node_count, error);
+    NEW_SCRATCH(double, most, cells->node_count, error);
+    NEW_SCRATCH(int32_t, needed, cells->node_count, error);
+    NEW_SCRATCH(int32_t, distance, parted.node_count, error);
+    for (int64_t i = 0; i < parted.node_count; i++) {
+        memcpy(x + i * dim, cells->x + (int64_t)of[i] * dim, (size_t)dim * sizeof *x);
+        most[of[i]] = (1.0 + COARSE_ROUND_OFF) * dim;
+    }
+    parted.x = x;
+    parted.node = node;
+    stretch_of(&parted, A, &flat);
+    RETURN_IF_ERROR(spacing_of(&parted, A, own, error));
+    find_needed(&parted, of, needed, distance);
+    for (int64_t i = 0; i < parted.node_count && flat; i++) {
+        double flatness = trace(dim, A + i * size);
+        if (flatness > most[of[i]] && needed[of[i]] == (distance[i] > 2 ? 1 : 0)) {
+            most[of[i]] = (1.0 + COARSE_ROUND_OFF) * flatness;
+            memcpy(stretch + (int64_t)of[i] * size, A + i * size, (size_t)size * sizeof *A);
+            spacing[of[i]] = own[i];
+            *any = true;
+        }
+    }
+    return STATUS_OK;
+}
+
+enum status support_sizes(const struct cells *cells, const int32_t *side, double **stretch, double *spacing,
+                          struct error *error)
+{
+    bool any;
+    *stretch = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(stretch, cells->node_count * cells->dim * cells->dim, error));
+    stretch_of(cells, *stretch, &any);
+    RETURN_IF_ERROR(spacing_of(cells, *stretch, spacing, error));
+    if (side != NULL) {
+        RETURN_IF_ERROR(take_flattest(cells, side, *stretch, spacing, &any, error));
+    }
+    if (!any) {
+        FREE_ALL(*stretch);
+        *stretch = NULL;
     }
     return STATUS_OK;
 }
