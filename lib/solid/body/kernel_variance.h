@@ -167,17 +167,19 @@ KERNEL_INLINE void load_fibres(const struct body *body, int64_t q, struct lanes_
 KERNEL_INLINE void stress_fibre(int dim, lanes share, lanes turned, const lanes a[3], const lanes strain[9],
                                 lanes M[9])
 {
-    lanes ea[3], along = {0.0}, trace = {0.0};
-    lanes_apply(dim, false, strain, a, ea);
+    lanes ea[3] = {{0.0}}, along = {0.0}, trace = {0.0};
+    for (int k = 0; k < dim * dim; k++) {
+        ea[k / dim] += strain[k] * a[k % dim];
+        trace += k / dim == k % dim ? strain[k] : (lanes){0.0};
+    }
     for (int k = 0; k < dim; k++) {
         along += a[k] * ea[k];
-        trace += strain[k * dim + k];
     }
-    lanes dev = share * (along - trace * (1.0 / 3.0));
+    trace = share * (along - trace * (1.0 / 3.0));
     for (int k = 0; k < dim * dim; k++) {
-        int r = k / dim, c = k % dim;
-        M[k] += dev * (a[r] * a[c] - (r == c ? 1.0 / 3.0 : 0.0)) +
-                turned * (ea[r] * a[c] + a[r] * ea[c] - 2.0 * along * a[r] * a[c]);
+        lanes outer = a[k / dim] * a[k % dim];
+        M[k] += (outer - (k / dim == k % dim ? 1.0 / 3.0 : 0.0)) * trace;
+        M[k] += turned * (ea[k / dim] * a[k % dim] + a[k / dim] * ea[k % dim] - 2.0 * along * outer);
     }
 }
 

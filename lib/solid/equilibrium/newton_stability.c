@@ -199,8 +199,8 @@ static bool is_unstable(struct newton *n, const struct space *space, double leas
     if (!negative || !(least < most) || !(symmetric || space->searched)) {
         return false;
     }
-    bool follows = n->system->contact_count == 0 && !system_has_potential(n->system);
-    return (!symmetric && follows) || is_negative(n, space->where);
+    bool smooth = n->system->contact_count == 0 && !n->slackens;
+    return (!symmetric && smooth) || is_negative(n, space->where);
 }
 
 enum status newton_judge_stability(struct newton *n, struct error *error)
