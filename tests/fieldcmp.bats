@@ -151,6 +151,7 @@ square() {
     run -3 --separate-stderr fieldcmp -m missing/map.mts a.txt b.txt
 }
 
+# Each moves as a rigid body, by at most 1 mm: what is left is the solver's tolerance of 1e-5.
 @test "bodies that slide along each other, on two meshes: each node is compared on its own side" {
     for h in 2 3; do
         printf 'SetFactory("OpenCASCADE");\nRectangle(1) = {0, 0, 0, 10, 10};\nRectangle(2) = {10, 0, 0, 10, 10};\nMeshSize {:} = %s;\n' $h > two.geo

@@ -1,6 +1,7 @@
 #include "approx/support/support.h"
 
 #include "approx/cells/face_edges.h"
+#include "approx/cells/parts.h"
 #include "base/box.h"
 #include "base/eigen.h"
 #include "base/lists.h"
@@ -141,43 +142,28 @@ static enum status part_sides(const struct cells *cells, const int32_t *side, in
     return STATUS_OK;
 }
 
-/* distance[]: 0 at some nodes, elsewhere more than `most`; to others up to `most` edges away, how many. */
-static void spread(const struct cells *cells, int32_t most, int32_t *distance)
-{
-    for (int32_t d = 1; d <= most; d++) {
-        for (int64_t c = 0; c < cells->count; c++) {
-            const int32_t *v = cells->node + c * (cells->dim + 1);
-            bool reached = false;
-            for (int k = 0; k <= cells->dim; k++) {
-                reached = reached || distance[v[k]] == d - 1;
-            }
-            for (int k = 0; k <= cells->dim && reached; k++) {
-                distance[v[k]] = distance[v[k]] > d ? d : distance[v[k]];
-            }
-        }
-    }
-}
-
 /* How many sides need each node of the body, needed[], zero: those on which no node within two edges of it is
  * itself two edges from all interfaces. They have too few nodes of their own to do with less of its support.
- * distance[] of the nodes on sides: more than 2 where they are needed. */
-static void find_needed(const struct cells *parted, const int32_t *of, int32_t *needed, int32_t *distance)
+ * needs[]: the nodes on sides that do. */
+static enum status find_needed(const struct cells *parted, const int32_t *of, int32_t *needed, bool *needs,
+                               struct error *error)
 {
+    int corners = parted->dim + 1;
+    NEW_SCRATCH(int32_t, sides, parted->node_count, error);
     for (int64_t i = 0; i < parted->node_count; i++) {
-        needed[of[i]]++;
+        sides[of[i]]++;
     }
     for (int64_t i = 0; i < parted->node_count; i++) {
-        distance[i] = needed[of[i]] > 1 ? 0 : 3;
+        needs[i] = sides[of[i]] > 1;
     }
-    spread(parted, 1, distance);
+    RETURN_IF_ERROR(choice_grow(parted->count, corners, parted->node, parted->node_count, 0, NULL, 1, false,
+                                needs, error));
+    RETURN_IF_ERROR(choice_grow(parted->count, corners, parted->node, parted->node_count, 0, NULL, -2, false,
+                                needs, error));
     for (int64_t i = 0; i < parted->node_count; i++) {
-        distance[i] = distance[i] <= 1 ? 3 : 0;
-        needed[of[i]] = 0;
+        needed[of[i]] += needs[i];
     }
-    spread(parted, 2, distance);
-    for (int64_t i = 0; i < parted->node_count; i++) {
-        needed[of[i]] += distance[i] > 2;
-    }
+    return STATUS_OK;
 }
 
 /* Where cells of some side are flat at a node that the other sides do not need, take A and the spacing that
@@ -196,7 +182,7 @@ static enum status take_flattest(const struct cells *cells, const int32_t *side,
     NEW_SCRATCH(double, own, parted.node_count, error);
     NEW_SCRATCH(double, most, cells->node_count, error);
     NEW_SCRATCH(int32_t, needed, cells->node_count, error);
-    NEW_SCRATCH(int32_t, distance, parted.node_count, error);
+    NEW_SCRATCH(bool, needs, parted.node_count, error);
     for (int64_t i = 0; i < parted.node_count; i++) {
         memcpy(x + i * dim, cells->x + (int64_t)of[i] * dim, (size_t)dim * sizeof *x);
         most[of[i]] = (1.0 + COARSE_ROUND_OFF) * dim;
@@ -205,10 +191,10 @@ static enum status take_flattest(const struct cells *cells, const int32_t *side,
     parted.node = node;
     stretch_of(&parted, A, &flat);
     RETURN_IF_ERROR(spacing_of(&parted, A, own, error));
-    find_needed(&parted, of, needed, distance);
+    RETURN_IF_ERROR(find_needed(&parted, of, needed, needs, error));
     for (int64_t i = 0; i < parted.node_count && flat; i++) {
         double flatness = trace(dim, A + i * size);
-        if (flatness > most[of[i]] && needed[of[i]] == (distance[i] > 2 ? 1 : 0)) {
+        if (flatness > most[of[i]] && needed[of[i]] == needs[i]) {
             most[of[i]] = (1.0 + COARSE_ROUND_OFF) * flatness;
             memcpy(stretch + (int64_t)of[i] * size, A + i * size, (size_t)size * sizeof *A);
             spacing[of[i]] = own[i];

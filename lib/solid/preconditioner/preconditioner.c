@@ -173,14 +173,10 @@ void preconditioner_project(struct preconditioner *p, double *x)
     memset(p->turned, 0, (size_t)turns->column_count * sizeof *p->turned);
     for (int64_t r = 0; r < turns->row_count; r++) {
         for (int64_t i = turns->ptr[r]; i < turns->ptr[r + 1]; i++) {
-            p->turned[turns->idx[i]] += turns->value[i] * x[r];
+            p->turned[turns->idx[i]] -= turns->value[i] * x[r];
         }
     }
-    for (int64_t r = 0; r < turns->row_count; r++) {
-        for (int64_t i = turns->ptr[r]; i < turns->ptr[r + 1]; i++) {
-            x[r] -= turns->value[i] * p->turned[turns->idx[i]];
-        }
-    }
+    sparse_add_rows(turns, 0, turns->row_count, 1, p->turned, x);
 }
 
 enum status preconditioner_row_forces(struct preconditioner *p, const double *residual, double *scratch,
