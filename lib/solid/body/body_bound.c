@@ -41,8 +41,9 @@ static double variance_modulus(const struct material *material, const double F[9
         largest = fmax(largest, sum);
     }
     struct variance_moduli moduli = smoothed_cells_moduli(material);
-    double fibres = fmax(moduli.fibre[0], 0.0) + fmax(moduli.fibre[1], 0.0);
-    return largest * (moduli.bulk + 4.0 / 3.0 * (fmax(moduli.shear, moduli.along) + fibres));
+    const struct material_rest *rest = &moduli.rest;
+    double fibres = fmax(rest->fibre[0], 0.0) + fmax(rest->fibre[1], 0.0);
+    return largest * (moduli.bulk + 4.0 / 3.0 * (fmax(rest->shear, rest->along) + fibres));
 }
 
 static struct bound bound_at(const struct body *body, int64_t q, bool rest)

@@ -175,10 +175,10 @@ KERNEL_INLINE void stress_fibre(int dim, lanes share, lanes turned, const lanes 
     for (int k = 0; k < dim; k++) {
         along += a[k] * ea[k];
     }
-    trace = share * (along - trace * (1.0 / 3.0));
+    lanes dev = share * (along - trace * (1.0 / 3.0));
     for (int k = 0; k < dim * dim; k++) {
         lanes outer = a[k / dim] * a[k % dim];
-        M[k] += (outer - (k / dim == k % dim ? 1.0 / 3.0 : 0.0)) * trace;
+        M[k] += (outer - (k / dim == k % dim ? 1.0 / 3.0 : 0.0)) * dev;
         M[k] += turned * (ea[k / dim] * a[k % dim] + a[k / dim] * ea[k % dim] - 2.0 * along * outer);
     }
 }

@@ -58,12 +58,10 @@ static enum status set_face_gradients(struct body *body, struct error *error)
 
 struct variance_moduli smoothed_cells_moduli(const struct material *material)
 {
-    struct material_rest rest = material_at_rest(material);
-    struct variance_moduli moduli = {.shear = rest.shear,
-                                     .along = rest.along,
-                                     .bulk = nodal_volume_part(material_bulk(material), rest.along)};
-    for (int f = 0; f < rest.families; f++) {
-        moduli.fibre[f] = nodal_volume_part(rest.fibre[f], rest.along);
+    struct variance_moduli moduli = {.rest = material_at_rest(material)};
+    moduli.bulk = nodal_volume_part(material_bulk(material), moduli.rest.along);
+    for (int f = 0; f < moduli.rest.families; f++) {
+        moduli.rest.fibre[f] = nodal_volume_part(moduli.rest.fibre[f], moduli.rest.along);
     }
     return moduli;
 }
@@ -71,15 +69,15 @@ struct variance_moduli smoothed_cells_moduli(const struct material *material)
 static enum status set_fibres(struct body *body, struct error *error)
 {
     for (int64_t m = 0; m < body->material_count; m++) {
-        struct material_rest rest = material_at_rest(&body->materials[m]);
-        struct variance_moduli moduli = smoothed_cells_moduli(&body->materials[m]);
+        struct material_rest rest = smoothed_cells_moduli(&body->materials[m]).rest;
         if (rest.families > 0 && body->cells.fibres == NULL) {
             RETURN_IF_ERROR(NEW_ARRAY(&body->cells.fibres, body->material_count, error));
         }
         for (int f = 0; f < rest.families; f++) {
-            body->cells.fibres[m].share[f] = 3.0 * moduli.fibre[f] / moduli.shear;
-            body->cells.fibres[m].turned[f] = 2.0 * (moduli.along - moduli.shear) / moduli.shear;
-            memcpy(body->cells.fibres[m].direction[f], rest.direction[f], sizeof rest.direction[f]);
+            struct variance_fibres *fibres = &body->cells.fibres[m];
+            fibres->share[f] = 3.0 * rest.fibre[f] / rest.shear;
+            fibres->turned[f] = 2.0 * (rest.along - rest.shear) / rest.shear;
+            memcpy(fibres->direction[f], rest.direction[f], sizeof rest.direction[f]);
         }
     }
     return STATUS_OK;
@@ -96,7 +94,7 @@ static enum status set_variance_moduli(struct body *body, struct error *error)
         int64_t cell = smoothed_cells_group(body, q);
         struct variance_moduli moduli = smoothed_cells_moduli(&body->materials[body->material[cell]]);
         double volume = VARIANCE_FACTOR(body->dim) * body->weight[q];
-        smoothed->variance_shear[cell] += volume * moduli.shear;
+        smoothed->variance_shear[cell] += volume * moduli.rest.shear;
         smoothed->variance_bulk[cell] += volume * moduli.bulk;
     }
     return set_fibres(body, error);

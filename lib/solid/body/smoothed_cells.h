@@ -9,6 +9,7 @@
 #pragma once
 
 #include "solid/body/field_averages.h"
+#include "solid/material/material.h"
 
 /* s_e by m_e. */
 #define EDGE_OFFSET 4.0
@@ -29,12 +30,12 @@
 #define COUPLING_CURVE 4.0
 
 struct body;
-struct material;
 
-/* The moduli of (10) in a material, Pa: of what would lock cells, kappa and fibres, up to twice the shear
- * modulus along fibres. */
+/* The moduli of (10) in a material, Pa: those at rest, but of what would lock cells, kappa and fibres, up to
+ * twice the shear modulus along fibres. */
 struct variance_moduli {
-    double shear, along, bulk, fibre[2];
+    struct material_rest rest;
+    double bulk;
 };
 struct variance_moduli smoothed_cells_moduli(const struct material *material);
 

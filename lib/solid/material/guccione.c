@@ -3,8 +3,6 @@
 #include "solid/material/law.h"
 #include "solid/material/tensor.h"
 
-#include <string.h>
-
 enum { C, BF, BT, BFS };
 
 /* The parameters are the numbers of the keys, C relative to mu. The tangent has the eigenvalues C (2 bf + bt)
@@ -27,8 +25,7 @@ static void rest(const struct material *material, struct material_rest *rest)
     double half = 0.5 * material->shear_modulus * b[C];
     rest->shear = half * b[BT];
     rest->along = half * b[BFS];
-    rest->fibre[rest->families] = 2.0 / 3.0 * half * (b[BF] - b[BT]);
-    memcpy(rest->direction[rest->families++], material->fibre, sizeof rest->direction[0]);
+    rest->fibre[0] = 2.0 / 3.0 * half * (b[BF] - b[BT]);
 }
 
 /* E, E a and Q. */

@@ -54,7 +54,9 @@ struct law {
      * isochoric e that is nearest to that of the law: a fifth of the sum of its eigenvalues, halved. NULL: no
      * parameters but the shear modulus. */
     double (*prepare)(const struct law_input *input, double *parameters, struct law_fault *fault);
-    void (*rest)(const struct material *material, struct material_rest *rest); /* NULL: there are no fibres */
+    /* Set the moduli at rest, and the families unless they are one along material->fibre; NULL: there are no
+     * fibres. */
+    void (*rest)(const struct material *material, struct material_rest *rest);
     /* W_iso where det F > 0, and P = dW_iso/dF; NaN or infinite where the law has none. */
     double (*energy)(const struct material *material, const double F[9]);
     void (*stress)(const struct material *material, const double F[9], double P[9]);

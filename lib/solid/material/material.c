@@ -3,6 +3,8 @@
 #include "base/vector.h"
 #include "solid/material/law.h"
 
+#include <string.h>
+
 void material_set_moduli(struct material *material, double youngs_modulus, double poisson_ratio)
 {
     material->shear_modulus = youngs_modulus / 2.0 / (1.0 + poisson_ratio);
@@ -41,6 +43,8 @@ struct material_rest material_at_rest(const struct material *material)
     double mu = material->shear_modulus;
     struct material_rest rest = {.shear = mu, .along = mu};
     if (material->fibre != NULL && material_laws[material->model]->rest != NULL) {
+        rest.families = 1;
+        memcpy(rest.direction[0], material->fibre, sizeof rest.direction[0]);
         material_laws[material->model]->rest(material, &rest);
     }
     return rest;

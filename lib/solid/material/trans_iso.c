@@ -4,8 +4,6 @@
 #include "solid/material/law.h"
 #include "solid/material/tensor.h"
 
-#include <string.h>
-
 enum { C1, C2, C3, C4, C5, LAMBDA_MAX };
 
 /* The parameters are the numbers of the keys, those in Pa relative to mu. */
@@ -29,8 +27,7 @@ static void rest(const struct material *material, struct material_rest *rest)
 {
     const double *p = material->parameters;
     rest->shear = rest->along = 2.0 * (p[C1] + p[C2]) * material->shear_modulus;
-    rest->fibre[rest->families] = p[C3] * p[C4] / 3.0 * material->shear_modulus;
-    memcpy(rest->direction[rest->families++], material->fibre, sizeof rest->direction[0]);
+    rest->fibre[0] = p[C3] * p[C4] / 3.0 * material->shear_modulus;
 }
 
 /* From where on the fibres are straight. */
