@@ -76,13 +76,12 @@ static enum status adaptive_cell_points(const struct stream *stream, const struc
                                         struct error *error)
 {
     const struct section *recorded = stream_find(stream, "support.radius");
-    NEW_SCRATCH(double, made, cells->node_count, error);
-    SCRATCH double *stretch = NULL;
+    FREED_BY(support_sizes_free) struct support_sizes made = {0};
     struct supports supports;
     if (recorded == NULL || options->given_radius) {
-        RETURN_IF_ERROR(stage_radii(stream, &options->refinement.support, cells->node_count, cells->x, made,
-                                    &stretch, error));
-        supports = (struct supports){made, stretch};
+        RETURN_IF_ERROR(
+            stage_sizes(stream, &options->refinement.support, cells->node_count, cells->x, &made, error));
+        supports = (struct supports){made.radius, made.stretch, made.side_count, made.sides};
     } else {
         RETURN_IF_ERROR(stream_supports(stream, "support", &supports, error));
     }

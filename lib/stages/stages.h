@@ -24,10 +24,10 @@ struct ipoints_options {
 MUST_CHECK enum status stage_ipoints(struct stream *stream, const struct ipoints_options *options,
                                      int64_t *unresolved, struct error *error);
 
-/* radius[node_count] and (*stretch)[], to be freed, as the stage `support` sets them: constant balls, or a
- * factor times the local spacing, that of the cells if there are any, and support_sizes. */
-MUST_CHECK enum status stage_radii(const struct stream *stream, const struct support_options *options,
-                                   int64_t node_count, const double *x, double *radius, double **stretch,
+/* The supports as the stage `support` sets them: constant balls, or a factor times the local spacing, by
+ * support_sizes if there are cells. */
+MUST_CHECK enum status stage_sizes(const struct stream *stream, const struct support_options *options,
+                                   int64_t node_count, const double *x, struct support_sizes *sizes,
                                    struct error *error);
 
 /* Statistics of one of the lists of `support`, */

@@ -34,6 +34,7 @@ static enum status check_shape(const struct stream *stream, const struct section
     int64_t cols = kind->cols == COLS_DIM           ? dim
                    : kind->cols == COLS_DIM_PLUS_1  ? dim + 1
                    : kind->cols == COLS_DIM_SQUARED ? dim * dim
+                   : kind->cols == COLS_SIDES       ? SIDE_COLUMNS(dim)
                    : kind->cols == COLS_ANY         ? section->cols
                                                     : kind->cols;
     const struct section *other = kind->rows_of != NULL ? stream_find(stream, kind->rows_of) : NULL;
@@ -72,12 +73,16 @@ enum status section_check_numbers(const struct section *section, enum content co
     return STATUS_OK;
 }
 
+/* Of matrices in the last columns. */
 static enum status check_stretch(const struct section *section, struct error *error)
 {
-    const double *A = section->data;
-    int dim = section->cols == 4 ? 2 : 3;
+    int dim = section->cols == 4 || section->cols == SIDE_COLUMNS(2) ? 2 : 3;
+    if (section->cols < dim * dim) {
+        return fail(error, STATUS_INPUT, "%s: %jd columns are no matrix", section->name, section->cols);
+    }
+    const double *A = (const double *)section->data + section->cols - dim * dim;
     RETURN_IF_ERROR(section_check_numbers(section, FINITE, error));
-    for (int64_t row = 0; row < section->rows; row++, A += dim * dim) {
+    for (int64_t row = 0; row < section->rows; row++, A += section->cols) {
         double value[3], V[9], least = INFINITY, most = 0.0, off = 0.0;
         eigen_symmetric(dim, A, value, V);
         for (int k = 0; k < dim * dim; k++) {
@@ -324,11 +329,13 @@ static enum status view_member(const struct stream *stream, const char *prefix, 
 enum status stream_neighbours(const struct stream *stream, const char *prefix, int64_t rows,
                               struct neighbours *lists, struct error *error)
 {
-    const struct section *ptr, *idx, *widen = NULL;
+    const struct section *ptr, *idx, *widen = NULL, *side = NULL;
     RETURN_IF_ERROR(view_member(stream, prefix, "ptr", true, &ptr, error));
     RETURN_IF_ERROR(view_member(stream, prefix, "idx", true, &idx, error));
     RETURN_IF_ERROR(view_member(stream, prefix, "widen", false, &widen, error));
-    *lists = (struct neighbours){.count = rows, .ptr = ptr->data, .idx = idx->data};
+    RETURN_IF_ERROR(view_member(stream, prefix, "side", false, &side, error));
+    *lists = (struct neighbours){
+        .count = rows, .ptr = ptr->data, .idx = idx->data, .side = side != NULL ? side->data : NULL};
     if (ptr->rows != rows + 1 || lists->ptr[0] != 0 || lists->ptr[rows] != idx->rows) {
         return fail(error, STATUS_INPUT, "%s.ptr: does not fit its lists and %s.idx: run %s again", prefix,
                     prefix, producer(section_kind_of(ptr->name)));
@@ -350,16 +357,35 @@ enum status stream_neighbours(const struct stream *stream, const char *prefix, i
     return STATUS_OK;
 }
 
+/* Rows of node, side, R, A. */
+static enum status check_sides(const struct section *sides, int64_t nodes, struct error *error)
+{
+    const double *row = sides->data, *before = NULL;
+    for (int64_t i = 0; i < sides->rows; i++, before = row, row += sides->cols) {
+        bool ascends = before == NULL || row[0] > before[0] || (row[0] == before[0] && row[1] > before[1]);
+        if (!(row[0] >= 0.0 && row[0] < (double)nodes && row[0] == floor(row[0]) && row[2] > 0.0 &&
+              ascends)) {
+            return fail(error, STATUS_INPUT,
+                        "%s: row %jd: not a node, a side and a radius that ascend: run support again",
+                        sides->name, i);
+        }
+    }
+    return STATUS_OK;
+}
+
 enum status stream_supports(const struct stream *stream, const char *prefix, struct supports *supports,
                             struct error *error)
 {
-    const struct section *radius, *stretch;
+    const struct section *radius, *stretch, *sides;
     char value[16];
     RETURN_IF_ERROR(view_member(stream, prefix, "radius", true, &radius, error));
     bool needed = section_attribute(radius, "stretch", value, sizeof value);
     RETURN_IF_ERROR(view_member(stream, prefix, "stretch", needed, &stretch, error));
-    *supports = (struct supports){radius->data, stretch != NULL ? stretch->data : NULL};
-    return STATUS_OK;
+    needed = section_attribute(radius, "sides", value, sizeof value);
+    RETURN_IF_ERROR(view_member(stream, prefix, "sides", needed, &sides, error));
+    *supports = (struct supports){radius->data, stretch != NULL ? stretch->data : NULL,
+                                  sides != NULL ? sides->rows : 0, sides != NULL ? sides->data : NULL};
+    return sides != NULL ? check_sides(sides, radius->rows, error) : STATUS_OK;
 }
 
 enum status stream_put_copy(struct stream *stream, const char *name, enum element_type type, int64_t rows,

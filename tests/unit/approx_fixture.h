@@ -95,8 +95,9 @@ static inline enum status tabulate(const struct support_options *options, int64_
     }
     if (status == STATUS_OK) {
         const struct cells none = {.dim = dim, .node_count = count, .x = x};
-        status = visibility_build(&none, (struct supports){table->radius, table->stretch},
-                                  options->visibility, options->side, &table->space, error);
+        status =
+            visibility_build(&none, (struct supports){.radius = table->radius, .stretch = table->stretch},
+                             options->visibility, options->side, &table->space, error);
     }
     if (status == STATUS_OK) {
         status = support_build(options, &table->space, NULL, point_count, points, "points.x", &table->lists,
@@ -107,7 +108,8 @@ static inline enum status tabulate(const struct support_options *options, int64_
         table->phi = malloc((size_t)pairs * sizeof(double));
         table->dphi = malloc((size_t)(pairs * dim) * sizeof(double));
         struct neighbours lists = table->lists;
-        status = shape_table(&options->mls, x, (struct supports){table->radius, table->stretch}, &lists,
+        status = shape_table(&options->mls, x,
+                             (struct supports){.radius = table->radius, .stretch = table->stretch}, &lists,
                              points, "points.x", table->phi, table->dphi, error);
     }
     return status;

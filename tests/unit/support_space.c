@@ -77,8 +77,8 @@ TEST_IN_EACH_DIM(field_turns_cells_over)
         cell[c] = (int32_t)(cells->count - 1 - c);
     }
     GOOD(visibility_build(cells, BALLS(halves.radius), options.visibility, options.side, &space, &error));
-    GOOD(field_least_determinants(&(struct field_shapes){{halves.radius, NULL}, options, options.mls}, &space,
-                                  cells->count, cell, u, least, &error));
+    GOOD(field_least_determinants(&(struct field_shapes){{.radius = halves.radius}, options, options.mls},
+                                  &space, cells->count, cell, u, least, &error));
     for (int64_t c = 0; c < cells->count; c++) {
         double sum = 0.0, most = 0.0;
         for (int k = 0; k <= dim; k++) {
@@ -89,8 +89,8 @@ TEST_IN_EACH_DIM(field_turns_cells_over)
         NEAR_TO(least[c], 1.0 - 1.5 * (sum + (5 - dim) * most) / 6.0, 1e-9);
     }
     u[0] = (double)NAN;
-    GOOD(field_least_determinants(&(struct field_shapes){{halves.radius, NULL}, options, options.mls}, &space,
-                                  cells->count, cell, u, least, &error));
+    GOOD(field_least_determinants(&(struct field_shapes){{.radius = halves.radius}, options, options.mls},
+                                  &space, cells->count, cell, u, least, &error));
     assert_true(isnan(least[cells->count - 1]) && !isnan(least[0]));
     halves_free(&halves);
 }
@@ -175,7 +175,7 @@ TEST_IN_EACH_DIM(kinks_are_exact)
     for (int stops = 0; stops < 2; stops++) {
         FREED_BY(field_table_free) struct field_table table = {0};
         options.side = stops ? halves.side : NULL;
-        GOOD(field_table_build(&(struct field_shapes){{halves.radius, NULL}, options, options.mls},
+        GOOD(field_table_build(&(struct field_shapes){{.radius = halves.radius}, options, options.mls},
                                &halves.cells, NULL, COUNT, x, "points", &table, &error));
         field_evaluate(COUNT, table.lists.ptr, table.lists.idx, table.phi, 1, field, got);
         for (int64_t p = 0; p < COUNT; p++) {

@@ -30,7 +30,7 @@ void run_frames_check(const struct run *run)
             tables = output->reactions + output->moments + output->energy;
     int64_t of_frame = 2 + (quasi_static ? fields : 0); /* u and its parameters */
     /* Besides: u, the supports of parameters, iteration. */
-    int64_t others = 2 + 2 + 1 + fields + 2 * tables + run->stream->section_count;
+    int64_t others = 2 + 4 + 1 + fields + 2 * tables + run->stream->section_count;
     double frames = count_frames(run->scene);
     int64_t most = (STREAM_SECTION_LIMIT - others) / of_frame - 1;
     if (frames > (double)most) {

@@ -38,7 +38,7 @@ void run_put_field(const struct run *run, const struct instant *instant, const d
 
 void run_put_supports(const struct run *run)
 {
-    static const char *const names[] = {"radius", "stretch", "side"};
+    static const char *const names[] = {"radius", "stretch", "sides", "side"};
     const struct section *radius = stream_find(run->stream, "support.radius"),
                          *nodes = stream_find(run->stream, "nodes.x");
     bool fits = radius != NULL && nodes != NULL && radius->rows == nodes->rows;

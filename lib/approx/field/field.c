@@ -79,8 +79,8 @@ enum status field_table_at(const struct field_shapes *shapes, const struct visib
     if (gradients) {
         RETURN_IF_ERROR(NEW_ARRAY(&table->dphi, table->lists.ptr[count] * space->cells.dim, error));
     }
-    return shape_table(&shapes->shapes, space->cells.x, space->grid.supports, &table->lists, x, what,
-                       table->phi, table->dphi, error);
+    return shape_table(&shapes->shapes, space->cells.x, space->supports, &table->lists, x, what, table->phi,
+                       table->dphi, error);
 }
 
 enum status field_table_build(const struct field_shapes *shapes, const struct cells *cells,

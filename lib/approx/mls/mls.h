@@ -8,7 +8,7 @@
  * units of x) becomes the dimensionless mu / s^4. */
 #pragma once
 
-#include "approx/points/point_grid.h"
+#include "approx/points/supports.h"
 #include "base/status.h"
 
 #include <math.h>
@@ -94,7 +94,8 @@ struct mls_support {
     const double *x;          /* the point, dim */
     const double *nodes;      /* all nodes, row-major, dim each */
     struct supports supports; /* of all nodes */
-    double widen;             /* factor on the radii at this point */
+    double widen;             /* factor on the radii at this point, */
+    int32_t side;             /* which sees the supports from this side of the interfaces; -1: none */
     const int32_t *neighbours;
     int64_t count;
 };

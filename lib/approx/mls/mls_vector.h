@@ -160,11 +160,10 @@ KERNEL_INLINE void store_row(const struct mls_point *point, int row, int64_t j, 
     memcpy(point->row + row * point->stride + j, v, sizeof *v);
 }
 
-/* A^2 xi of neighbour j, a node. */
-KERNEL_INLINE void turn_difference(const double *stretch, int64_t node, int dim, int64_t j,
-                                   struct mls_point *point)
+/* A^2 xi of neighbour j; A NULL: 1. */
+KERNEL_INLINE void turn_difference(const double *A, int dim, int64_t j, struct mls_point *point)
 {
-    const double *xi = point->row + j, *A = stretch != NULL ? stretch + node * dim * dim : NULL;
+    const double *xi = point->row + j;
     double *turned = point->row + ROW_TURNED * point->stride + j, once[3] = {0.0};
     for (int k = 0; k < dim * dim && A != NULL; k++) {
         once[k / dim] += A[k] * xi[k % dim * point->stride];
@@ -188,10 +187,10 @@ KERNEL_INLINE void gather(const struct mls_support *support, int dim, struct mls
         for (int a = 0; a < dim; a++) {
             xi[a * point->stride + j] = support->nodes[node * dim + a] - support->x[a];
         }
-        turn_difference(support->supports.stretch, node, dim, j, point);
-        double own = support->supports.radius[node];
-        radius[j] = own;
-        largest = own > largest ? own : largest;
+        struct own_support own = supports_seen(&support->supports, dim, node, support->side);
+        turn_difference(own.stretch, dim, j, point);
+        radius[j] = own.radius;
+        largest = own.radius > largest ? own.radius : largest;
     }
     for (int64_t j = support->count; j < point->padded; j++) {
         for (int a = 0; a < dim; a++) {

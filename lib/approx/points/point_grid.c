@@ -55,8 +55,8 @@ static int64_t choose_bins(struct point_grid_level *level, int dim, const double
 }
 
 /* Sort the nodes of one level into bins. bin[node_count]: scratch. */
-static enum status build_level(struct point_grid *grid, int number, const uint8_t *level_of_node,
-                               int32_t *bin, struct error *error)
+static enum status build_level(struct point_grid *grid, int number, const double *radius,
+                               const uint8_t *level_of_node, int32_t *bin, struct error *error)
 {
     struct point_grid_level *level = &grid->level[number];
     int dim = grid->dim;
@@ -70,7 +70,7 @@ static enum status build_level(struct point_grid *grid, int number, const uint8_
             continue;
         }
         nodes++;
-        level->largest_radius = fmax(level->largest_radius, grid->supports.radius[n]);
+        level->largest_radius = fmax(level->largest_radius, radius[n]);
         for (int a = 0; a < dim; a++) {
             level->origin[a] = fmin(level->origin[a], grid->x[n * dim + a]);
             upper[a] = fmax(upper[a], grid->x[n * dim + a]);
@@ -90,7 +90,7 @@ static enum status build_level(struct point_grid *grid, int number, const uint8_
         for (int a = 0; a < dim; a++) {
             place[a] = grid->x[(int64_t)level->node[i] * dim + a];
         }
-        place[dim] = grid->supports.radius[level->node[i]];
+        place[dim] = radius[level->node[i]];
     }
     return STATUS_OK;
 }
@@ -99,7 +99,7 @@ enum status point_grid_build(struct point_grid *grid, int dim, int64_t node_coun
                              const double *radius, struct error *error)
 {
     double least = INFINITY;
-    *grid = (struct point_grid){.dim = dim, .node_count = node_count, .x = x, .supports.radius = radius};
+    *grid = (struct point_grid){.dim = dim, .node_count = node_count, .x = x};
     for (int64_t n = 0; n < node_count; n++) {
         if (!(radius[n] > 0.0) || !isfinite(radius[n])) {
             return fail(error, STATUS_INPUT, "support.radius: row %lld: %g is no radius", (long long)n,
@@ -116,7 +116,7 @@ enum status point_grid_build(struct point_grid *grid, int dim, int64_t node_coun
         }
     }
     for (int l = 0; l < grid->level_count; l++) {
-        RETURN_IF_ERROR(build_level(grid, l, level_of_node, bin, error));
+        RETURN_IF_ERROR(build_level(grid, l, radius, level_of_node, bin, error));
     }
     return STATUS_OK;
 }
@@ -209,29 +209,10 @@ enum status point_grid_query_box(const struct point_grid *grid, const double *lo
     return STATUS_OK;
 }
 
-double point_grid_distance2(const struct point_grid *grid, const double *x, int64_t node)
-{
-    int dim = grid->dim;
-    const double *A = grid->supports.stretch;
-    double difference[3];
-    vector_subtract(dim, x, grid->x + node * dim, difference);
-    return vector_square(dim, A != NULL ? A + node * dim * dim : NULL, difference);
-}
-
 enum status point_grid_query(const struct point_grid *grid, const double *x, double factor,
                              struct index_list *list, struct error *error)
 {
-    int64_t kept = list->count;
-    RETURN_IF_ERROR(point_grid_query_box(grid, x, x, factor, list, error));
-    if (grid->supports.stretch != NULL) {
-        for (int64_t i = kept; i < list->count; i++) {
-            double radius = factor * grid->supports.radius[list->index[i]];
-            list->index[kept] = list->index[i];
-            kept += point_grid_distance2(grid, x, list->index[i]) < radius * radius;
-        }
-        list->count = kept;
-    }
-    return STATUS_OK;
+    return point_grid_query_box(grid, x, x, factor, list, error);
 }
 
 static void insert(struct nearest_nodes *nearest, int64_t most, int32_t node, double distance)

@@ -21,18 +21,11 @@ struct point_grid_level {
     double *place;  /* for each of `node`: coordinates and radius, dim + 1 */
 };
 
-/* The supports of the nodes: ellipsoids |A_j (x - x_j)| < R_j. */
-struct supports {
-    const double *radius;  /* R_j, m */
-    const double *stretch; /* A_j, symmetric, dim * dim each, no eigenvalue below 1; NULL: all are balls */
-};
-
-/* Node coordinates and radii are the caller's and must outlive the grid. */
+/* Node coordinates are the caller's and must outlive the grid. */
 struct point_grid {
     int dim;
     int64_t node_count;
     const double *x;
-    struct supports supports; /* balls, unless the caller adds the stretch */
     int level_count;
     struct point_grid_level level[POINT_GRID_LEVELS];
 };
@@ -43,9 +36,6 @@ MUST_CHECK enum status point_grid_build(struct point_grid *grid, int dim, int64_
                                         const double *radius, struct error *error);
 void point_grid_free(struct point_grid *grid);
 
-/* The square of |A (x - x_j)| of a node j. */
-double point_grid_distance2(const struct point_grid *grid, const double *x, int64_t node);
-
 /* A growing list of node indices. */
 struct index_list {
     int32_t *index;
@@ -53,12 +43,12 @@ struct index_list {
 };
 void index_list_free(struct index_list *list);
 
-/* Append to `list` the nodes j with |x - x_j| < factor R_j, or |A_j (x - x_j)|, in ascending order. */
+/* Append to `list` the nodes j with |x - x_j| < factor R_j, in ascending order. */
 MUST_CHECK enum status point_grid_query(const struct point_grid *grid, const double *x, double factor,
                                         struct index_list *list, struct error *error);
 
-/* The same, where x is the point of the box low .. high nearest to each node, and all A are 1. So it finds
- * every node that a query for a point of the box would find. */
+/* The same, where x is the point of the box low .. high nearest to each node. So it finds every node that a
+ * query for a point of the box would find. */
 MUST_CHECK enum status point_grid_query_box(const struct point_grid *grid, const double *low,
                                             const double *high, double factor, struct index_list *list,
                                             struct error *error);

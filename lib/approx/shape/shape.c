@@ -18,6 +18,7 @@ static enum status tabulate(const struct mls *mls, struct mls_support support, c
         int64_t pair = lists->ptr[p], at = pair - lists->ptr[first];
         support.x = x + p * mls->dim;
         support.widen = lists->widen[p];
+        support.side = lists->side != NULL ? lists->side[p] : -1;
         support.neighbours = lists->idx + pair;
         support.count = lists->ptr[p + 1] - pair;
         RETURN_IF_ERROR(mls_evaluate(mls, &support, &work, phi + at,

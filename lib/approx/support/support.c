@@ -14,8 +14,8 @@
 /* The input of a search for neighbours. */
 struct search {
     const struct support_options *options;
-    const struct point_grid *grid;
-    const struct visibility *visibility; /* NULL: all nodes within their radius are neighbours */
+    const struct visibility *visibility;
+    bool looks; /* else all nodes within their radius are neighbours */
     struct visibility_places places;
     const double *x;
     const char *what;
@@ -41,16 +41,28 @@ struct found {
 
 static const double widen_step = 1.05;
 
-/* Keep the `most` nearest of the neighbours index[count], of equally near ones those with lower index. */
-static enum status keep_nearest(const struct point_grid *grid, const double *x, int64_t most, int32_t *index,
-                                int64_t *count, struct worker *worker, struct error *error)
+/* The square of |A (x - x_j)| of a node j, for the worker's point x. */
+static double distance2(const struct search *search, const double *x, int64_t node,
+                        const struct worker *worker)
 {
+    int dim = search->visibility->cells.dim;
+    double difference[3];
+    struct own_support own = supports_seen(&search->visibility->supports, dim, node, worker->visibility.side);
+    vector_subtract(dim, x, search->visibility->cells.x + node * dim, difference);
+    return vector_square(dim, own.stretch, difference);
+}
+
+/* Keep the `most` nearest of the neighbours index[count], of equally near ones those with lower index. */
+static enum status keep_nearest(const struct search *search, const double *x, int32_t *index, int64_t *count,
+                                struct worker *worker, struct error *error)
+{
+    int64_t most = search->options->most;
     if (most <= 0 || *count <= most) {
         return STATUS_OK;
     }
     RETURN_IF_ERROR(GROW_ARRAY(&worker->order, *count, &worker->order_room, error));
     for (int64_t i = 0; i < *count; i++) {
-        worker->order[i] = (struct placed){point_grid_distance2(grid, x, index[i]), index[i]};
+        worker->order[i] = (struct placed){distance2(search, x, index[i], worker), index[i]};
     }
     qsort(worker->order, (size_t)*count, sizeof *worker->order, compare_placed);
     for (int64_t i = 0; i < most; i++) {
@@ -63,36 +75,36 @@ static enum status keep_nearest(const struct point_grid *grid, const double *x, 
 
 /* Mean spacing of the nodes in a support: the edge of the cube (square) with the volume per node. A list
  * limited to the nearest extends only to its farthest node. */
-static double spacing_within(const struct support_options *options, const struct point_grid *grid,
-                             const double *x, const int32_t *index, int64_t count, double widen)
+static double spacing_within(const struct search *search, const double *x, const int32_t *index,
+                             int64_t count, double widen, const struct worker *worker)
 {
+    const struct supports *supports = &search->visibility->supports;
+    int dim = search->visibility->cells.dim;
     double farthest = 0.0;
-    if (count == options->most) {
+    if (count == search->options->most) {
         for (int64_t i = 0; i < count; i++) {
-            double distance2 = point_grid_distance2(grid, x, index[i]);
-            farthest = distance2 > farthest ? distance2 : farthest;
+            farthest = fmax(farthest, distance2(search, x, index[i], worker));
         }
         farthest = sqrt(farthest);
     } else {
         for (int64_t i = 0; i < count; i++) {
-            farthest =
-                grid->supports.radius[index[i]] > farthest ? grid->supports.radius[index[i]] : farthest;
+            farthest = fmax(farthest, supports_seen(supports, dim, index[i], worker->visibility.side).radius);
         }
         farthest *= widen;
     }
-    double unit_ball = grid->dim == 2 ? 3.141592653589793 : 4.1887902047863905;
-    return farthest * pow(unit_ball / (double)count, 1.0 / grid->dim);
+    double unit_ball = dim == 2 ? 3.141592653589793 : 4.1887902047863905;
+    return farthest * pow(unit_ball / (double)count, 1.0 / dim);
 }
 
-/* |A^-1 g|^2 of a gradient, with A of a node. */
-static double square_in_support(int dim, const double *stretch, int64_t node, const double *g)
+/* |A^-1 g|^2 of a gradient; stretch: A, or NULL, 1. */
+static double square_in_support(int dim, const double *stretch, const double *g)
 {
     double A[3][3] = {{0.0}, {0.0}, {0.0, 0.0, 1.0}}, inverse[3][3], gradient[3] = {0.0};
     if (stretch == NULL) {
         return vector_dot(dim, g, g);
     }
     for (int a = 0; a < dim; a++) {
-        memcpy(A[a], stretch + (node * dim + a) * dim, (size_t)dim * sizeof *g);
+        memcpy(A[a], stretch + a * dim, (size_t)dim * sizeof *g);
         gradient[a] = g[a];
     }
     (void)matrix_inverse(A[0], A[1], A[2], inverse);
@@ -101,18 +113,20 @@ static double square_in_support(int dim, const double *stretch, int64_t node, co
 
 /* Judge a support: the verdict on its number of nodes and moment matrix, and the largest gradient times the
  * spacing. */
-static enum status judge(const struct support_options *options, const struct point_grid *grid,
-                         const double *x, const int32_t *index, int64_t count, struct worker *worker,
-                         struct found *found, struct error *error)
+static enum status judge(const struct search *search, const double *x, const int32_t *index, int64_t count,
+                         struct worker *worker, struct found *found, struct error *error)
 {
+    const struct support_options *options = search->options;
+    const struct supports *supports = &search->visibility->supports;
     struct mls_support support = {.x = x,
-                                  .nodes = grid->x,
-                                  .supports = grid->supports,
+                                  .nodes = search->visibility->cells.x,
+                                  .supports = *supports,
                                   .widen = found->widen,
+                                  .side = worker->visibility.side,
                                   .neighbours = index,
                                   .count = count};
     double largest2 = 0.0;
-    int dim = grid->dim;
+    int dim = search->visibility->cells.dim;
     found->verdict = MLS_TOO_FEW;
     if (count < options->least) {
         return STATUS_OK;
@@ -121,29 +135,37 @@ static enum status judge(const struct support_options *options, const struct poi
     RETURN_IF_ERROR(
         mls_evaluate(&options->mls, &support, &worker->work, NULL, worker->gradient, &found->verdict, error));
     for (int64_t i = 0; i < count && found->verdict == MLS_GOOD; i++) {
-        double square = square_in_support(dim, grid->supports.stretch, index[i], worker->gradient + i * dim);
-        largest2 = square > largest2 ? square : largest2;
+        const double *A = supports_seen(supports, dim, index[i], support.side).stretch;
+        largest2 = fmax(largest2, square_in_support(dim, A, worker->gradient + i * dim));
     }
-    found->steepness = sqrt(largest2) * spacing_within(options, grid, x, index, count, found->widen);
+    found->steepness = sqrt(largest2) * spacing_within(search, x, index, count, found->widen, worker);
     return STATUS_OK;
 }
 
-/* Replace the neighbours from `first` on of the worker's list by those within the radii times found->widen.
- */
-static enum status gather(const struct search *search, int64_t p, int64_t first, struct worker *worker,
+/* Replace the neighbours from `first` on of the worker's list by those within the supports times
+ * found->widen. */
+static enum status gather(const struct search *search, const double *x, int64_t first, struct worker *worker,
                           const struct found *found, struct error *error)
 {
-    const struct point_grid *grid = search->grid;
-    const double *x = search->x + p * grid->dim;
+    const struct visibility *visibility = search->visibility;
+    bool balls = visibility->supports.stretch == NULL && visibility->supports.side_count == 0;
     worker->list.count = first;
-    RETURN_IF_ERROR(point_grid_query(grid, x, found->widen, &worker->list, error));
-    int64_t count = worker->list.count - first;
+    RETURN_IF_ERROR(point_grid_query(&visibility->grid, x, found->widen, &worker->list, error));
     int32_t *index = worker->list.index + first;
-    if (search->visibility != NULL) {
-        RETURN_IF_ERROR(
-            visibility_filter(search->visibility, found->widen, index, &count, &worker->visibility, error));
+    int64_t near = worker->list.count - first, count = balls ? near : 0;
+    for (int64_t i = 0; i < near && !balls; i++) {
+        double radius =
+            supports_seen(&visibility->supports, visibility->cells.dim, index[i], worker->visibility.side)
+                .radius *
+            found->widen;
+        index[count] = index[i];
+        count += distance2(search, x, index[i], worker) < radius * radius;
     }
-    RETURN_IF_ERROR(keep_nearest(grid, x, search->options->most, index, &count, worker, error));
+    if (search->looks) {
+        RETURN_IF_ERROR(
+            visibility_filter(visibility, found->widen, index, &count, &worker->visibility, error));
+    }
+    RETURN_IF_ERROR(keep_nearest(search, x, index, &count, worker, error));
     worker->list.count = first + count;
     return STATUS_OK;
 }
@@ -153,17 +175,16 @@ static enum status widen(const struct search *search, int64_t p, int64_t first, 
                          struct found *found, struct error *error)
 {
     const struct support_options *options = search->options;
-    const struct point_grid *grid = search->grid;
-    const double *x = search->x + p * grid->dim;
+    const double *x = search->x + p * search->visibility->cells.dim;
     struct found best = {.steepness = INFINITY};
     *found = (struct found){.widen = 1.0};
     if (!options->widen) {
-        return gather(search, p, first, worker, found, error);
+        return gather(search, x, first, worker, found, error);
     }
     for (; found->widen <= SUPPORT_WIDEN_LIMIT; found->widen *= widen_step) {
-        RETURN_IF_ERROR(gather(search, p, first, worker, found, error));
-        RETURN_IF_ERROR(judge(options, grid, x, worker->list.index + first, worker->list.count - first,
-                              worker, found, error));
+        RETURN_IF_ERROR(gather(search, x, first, worker, found, error));
+        RETURN_IF_ERROR(
+            judge(search, x, worker->list.index + first, worker->list.count - first, worker, found, error));
         bool good = found->verdict == MLS_GOOD;
         best = good && found->steepness < best.steepness ? *found : best;
         if (good && found->steepness <= options->gradient_bound) {
@@ -173,7 +194,7 @@ static enum status widen(const struct search *search, int64_t p, int64_t first, 
     }
     if (best.widen > 0.0) {
         *found = best;
-        return gather(search, p, first, worker, found, error);
+        return gather(search, x, first, worker, found, error);
     }
     return STATUS_OK;
 }
@@ -185,12 +206,12 @@ static enum status support_find(const struct search *search, int64_t p, struct w
                                 struct found *found, struct error *error)
 {
     const struct visibility *visibility = search->visibility;
-    bool sided = visibility != NULL && visibility->cell_side != NULL, good = false;
+    bool sided = search->looks && visibility->cell_side != NULL, good = false;
     int64_t first = worker->list.count;
     for (int whole = 0; whole <= (sided ? 1 : 0) && !good; whole++) {
-        if (visibility != NULL) {
+        if (search->looks) {
             RETURN_IF_ERROR(visibility_begin(visibility, &search->places, p,
-                                             search->x + p * search->grid->dim, whole == 1,
+                                             search->x + p * visibility->cells.dim, whole == 1,
                                              &worker->visibility, error));
         }
         RETURN_IF_ERROR(widen(search, p, first, worker, found, error));
@@ -226,7 +247,8 @@ static enum status fail_support(const struct search *search, int64_t row, const 
                                 enum mls_verdict verdict, struct error *error)
 {
     char stray[96] = "";
-    const double *radius = search->grid->supports.radius;
+    int dim = search->visibility->cells.dim;
+    const double *radius = search->visibility->supports.radius;
     if (count > 0) {
         int32_t widest = index[0];
         for (int64_t i = 1; i < count; i++) {
@@ -237,9 +259,8 @@ static enum status fail_support(const struct search *search, int64_t row, const 
     }
     return fail(error, STATUS_VERDICT,
                 "%s: row %lld at %s: no good support even at %g times the radius (%lld nodes within%s%s): %s",
-                search->what, (long long)row,
-                POINT_TEXT(search->grid->dim, search->x + row * search->grid->dim), SUPPORT_WIDEN_LIMIT,
-                (long long)count, search->visibility != NULL ? " reach through the cells" : "", stray,
+                search->what, (long long)row, POINT_TEXT(dim, search->x + row * dim), SUPPORT_WIDEN_LIMIT,
+                (long long)count, search->looks ? " reach through the cells" : "", stray,
                 verdict == MLS_TOO_FEW
                     ? "too few"
                     : "they lie in a plane or on a line (for mls2: on a quadric), or nearly so");
@@ -250,7 +271,7 @@ static enum status fail_support(const struct search *search, int64_t row, const 
 static enum status build_chunk(const struct search *search, int64_t first, int64_t last,
                                struct neighbours *lists, struct worker *worker, struct error *error)
 {
-    int dim = search->grid->dim;
+    int dim = search->visibility->cells.dim;
     worker->list.count = 0;
     for (int64_t p = first; p < last; p++) {
         struct found found;
@@ -267,6 +288,9 @@ static enum status build_chunk(const struct search *search, int64_t first, int64
             return fail_support(search, p, worker->list.index + before, count, found.verdict, error);
         }
         lists->widen[p] = found.widen;
+        if (lists->side != NULL) {
+            lists->side[p] = worker->visibility.side;
+        }
         search->steepness[p] = found.steepness;
         lists->ptr[p + 1] = count;
     }
@@ -310,7 +334,7 @@ static enum status build_chunks(const struct search *search, struct neighbours *
     enum status failure = STATUS_OK;
 #pragma omp parallel
     {
-        struct worker worker = {0};
+        struct worker worker = {.visibility.side = -1};
 #pragma omp for ordered schedule(dynamic, 1)
         for (int64_t c = 0; c < chunk_count; c++) {
             struct error own;
@@ -339,13 +363,14 @@ enum status support_build(const struct support_options *options, const struct vi
     *lists = (struct neighbours){.count = count, .widest = 1.0};
     NEW_SCRATCH(double, steepness, count, error);
     struct search search = {.options = options,
-                            .grid = &visibility->grid,
-                            .visibility = visibility->across != NULL ? visibility : NULL,
+                            .visibility = visibility,
+                            .looks = visibility->across != NULL,
                             .x = x,
                             .what = what,
                             .steepness = steepness};
     RETURN_IF_ERROR(NEW_ARRAY(&lists->ptr, count + 1, error));
     RETURN_IF_ERROR(NEW_ARRAY(&lists->widen, count, error));
+    RETURN_IF_ERROR(visibility->supports.side_count > 0 ? NEW_ARRAY(&lists->side, count, error) : STATUS_OK);
     if (places != NULL) {
         search.places = *places;
     }
@@ -360,6 +385,6 @@ enum status support_build(const struct support_options *options, const struct vi
 
 void support_free(struct neighbours *lists)
 {
-    FREE_ALL(lists->ptr, lists->idx, lists->widen);
+    FREE_ALL(lists->ptr, lists->idx, lists->widen, lists->side);
     *lists = (struct neighbours){0};
 }

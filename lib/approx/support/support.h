@@ -33,6 +33,7 @@ struct neighbours {
     int64_t *ptr;    /* count + 1 */
     int32_t *idx;    /* ptr[count] node indices, ascending within a point */
     double *widen;   /* count: factor on the radii, >= 1 */
+    int32_t *side;   /* count: the side from which supports are seen, or -1; NULL where they have no sides */
     int64_t widened; /* how many points needed widening */
     double widest;   /* the largest factor */
     struct steep_points steep;
@@ -44,22 +45,25 @@ struct neighbours {
 MUST_CHECK enum status nodes_spacing(int dim, int64_t node_count, const double *x, double *spacing,
                                      struct error *error);
 
-/* (*stretch)[node_count * dim * dim], to be freed: A of each node's support (point_grid.h). Supports are
- * longer where the cells around the node are: T is the mean of x (x) x over the edges of these cells, with
- * eigenvalues t_1 >= t_i. A has the eigenvectors of T, and the squares of its eigenvalues are max(1, t_1 /
- * t_i - 3 dim + 1), at most those of supports that are 32 times as long as wide. Of a lattice of cubes that
- * are cut along one diagonal t_1 / t_i is 4, in 2D 3. NULL where all A are 1.
- *
- * spacing[node_count], m, by which the radii of these supports are set: that of the cells in lengths |A
+/* The supports of nodes, made. */
+struct support_sizes {
+    double *radius, *stretch, *sides; /* as struct supports */
+    int64_t side_count;
+};
+void support_sizes_free(struct support_sizes *sizes);
+
+/* The supports of the nodes of cells, without cells only the radii. They are balls, and longer where the
+ * cells around the node are: T is the mean of x (x) x over the edges of these cells, with eigenvalues t_1 >=
+ * t_i. A has the eigenvectors of T, and the squares of its eigenvalues are max(1, t_1 / t_i - 3 dim + 1), at
+ * most those of supports that are 32 times as long as wide. Of a lattice of cubes that are cut along one
+ * diagonal t_1 / t_i is 4, in 2D 3. The spacing by which the radii are set is that of the cells in lengths |A
  * edge|, and a little more where A is not 1. A flat lattice becomes one of equilateral triangles, whose
  * second neighbours, at 3^(1/2) spacings, must not be just outside of supports of 1.8.
  *
- * side[cells->count], or NULL: at an interface where supports stop, and where the cells of a side are flat,
- * those of the flattest side count alone: a layer within a body has the supports that it has alone. Another
- * side needs the node's support as it is, for all cells, unless within two edges of the node it has one that
- * is two edges from all interfaces: as the core between two skins, of two cells across. */
-MUST_CHECK enum status support_sizes(const struct cells *cells, const int32_t *side, double **stretch,
-                                     double *spacing, struct error *error);
+ * On an interface each side has the supports that it has alone: a layer within a body must not have wider
+ * ones than by itself. With a constant radius all are balls. */
+MUST_CHECK enum status support_sizes(const struct support_options *options, const struct cells *cells,
+                                     struct support_sizes *sizes, struct error *error);
 
 /* radius[node_count], m, from the options and the local spacing. */
 MUST_CHECK enum status support_radii(const struct support_options *options, int64_t node_count,

@@ -88,14 +88,15 @@ static bool set_stretch(int dim, double *A)
     return flat;
 }
 
-/* stretch[node_count * dim * dim], zero: A of the nodes; *any: whether some are not 1. */
-static void stretch_of(const struct cells *cells, double *stretch, bool *any)
+/* stretch[node_count * dim * dim], zero: A of the nodes; returns whether some are not 1. */
+static bool stretch_of(const struct cells *cells, double *stretch)
 {
-    *any = false;
+    bool any = false;
     sum_edges(cells, stretch);
     for (int64_t n = 0; n < cells->node_count; n++) {
-        *any = set_stretch(cells->dim, stretch + n * cells->dim * cells->dim) || *any;
+        any = set_stretch(cells->dim, stretch + n * cells->dim * cells->dim) || any;
     }
+    return any;
 }
 
 static double trace(int dim, const double *A)
@@ -114,112 +115,99 @@ static enum status spacing_of(const struct cells *cells, const double *stretch, 
     return STATUS_OK;
 }
 
-/* node[cells->count * (dim + 1)]: the cells by sides, each side with nodes 0 .. *count - 1 of its own; of[]:
- * of each of these the node of the body. */
-static enum status part_sides(const struct cells *cells, const int32_t *side, int32_t *node, int32_t *of,
-                              int64_t *count, struct error *error)
+/* The cells, each side with nodes of its own, numbered by sides. of[cells->count * (dim + 1)]: of each of
+ * these nodes that of the body; side_of[]: and its side; node[], x[]: the arrays of *parted. */
+static enum status part_sides(const struct cells *cells, const int32_t *side, int32_t *node, double *x,
+                              int32_t *of, int32_t *side_of, struct cells *parted, struct error *error)
 {
     SCRATCH int64_t *ptr = NULL;
     SCRATCH int32_t *idx = NULL;
-    int64_t sides = 0, corners = cells->dim + 1;
+    int64_t sides = 0, count = 0, corners = cells->dim + 1;
     NEW_SCRATCH(int32_t, last, cells->node_count, error); /* of the nodes made, of each node, from 1 */
     for (int64_t c = 0; c < cells->count; c++) {
         sides = side[c] >= sides ? side[c] + 1 : sides;
     }
     RETURN_IF_ERROR(lists_by_row(cells->count, 1, side, sides, &ptr, &idx, error));
-    *count = 0;
     for (int64_t s = 0; s < sides; s++) {
-        int64_t before = *count;
+        int64_t before = count;
         for (int64_t i = ptr[s] * corners; i < ptr[s + 1] * corners; i++) {
             int32_t n = cells->node[idx[i / corners] * corners + i % corners];
             if (last[n] <= before) {
-                of[(*count)++] = n;
-                last[n] = (int32_t)*count;
+                memcpy(x + count * cells->dim, cells->x + (int64_t)n * cells->dim,
+                       (size_t)cells->dim * sizeof *x);
+                side_of[count] = (int32_t)s;
+                of[count++] = n;
+                last[n] = (int32_t)count;
             }
             node[i] = last[n] - 1;
         }
     }
+    *parted = *cells;
+    parted->node_count = count;
+    parted->node = node;
+    parted->x = x;
     return STATUS_OK;
 }
 
-/* How many sides need each node of the body, needed[], zero: those on which no node within two edges of it is
- * itself two edges from all interfaces. They have too few nodes of their own to do with less of its support.
- * needs[]: the nodes on sides that do. */
-static enum status find_needed(const struct cells *parted, const int32_t *of, int32_t *needed, bool *needs,
-                               struct error *error)
-{
-    int corners = parted->dim + 1;
-    NEW_SCRATCH(int32_t, sides, parted->node_count, error);
-    for (int64_t i = 0; i < parted->node_count; i++) {
-        sides[of[i]]++;
-    }
-    for (int64_t i = 0; i < parted->node_count; i++) {
-        needs[i] = sides[of[i]] > 1;
-    }
-    RETURN_IF_ERROR(choice_grow(parted->count, corners, parted->node, parted->node_count, 0, NULL, 1, false,
-                                needs, error));
-    RETURN_IF_ERROR(choice_grow(parted->count, corners, parted->node, parted->node_count, 0, NULL, -2, false,
-                                needs, error));
-    for (int64_t i = 0; i < parted->node_count; i++) {
-        needed[of[i]] += needs[i];
-    }
-    return STATUS_OK;
-}
-
-/* Where cells of some side are flat at a node that the other sides do not need, take A and the spacing that
- * the flattest side alone has. */
-static enum status take_flattest(const struct cells *cells, const int32_t *side, double *stretch,
-                                 double *spacing, bool *any, struct error *error)
+/* The supports of nodes on interfaces, of each side as of its cells alone; R: the spacing. */
+static enum status make_sides(const struct cells *cells, const int32_t *side, struct support_sizes *sizes,
+                              struct error *error)
 {
     int dim = cells->dim, size = dim * dim;
-    struct cells parted = *cells;
-    bool flat;
+    struct cells parted;
+    SCRATCH int64_t *ptr = NULL;
+    SCRATCH int32_t *idx = NULL;
     NEW_SCRATCH(int32_t, node, cells->count * (dim + 1), error);
     NEW_SCRATCH(int32_t, of, cells->count * (dim + 1), error);
-    RETURN_IF_ERROR(part_sides(cells, side, node, of, &parted.node_count, error));
-    NEW_SCRATCH(double, x, parted.node_count * dim, error);
+    NEW_SCRATCH(int32_t, side_of, cells->count * (dim + 1), error);
+    NEW_SCRATCH(double, x, cells->count * (dim + 1) * dim, error);
+    RETURN_IF_ERROR(part_sides(cells, side, node, x, of, side_of, &parted, error));
     NEW_SCRATCH(double, A, parted.node_count * size, error);
-    NEW_SCRATCH(double, own, parted.node_count, error);
-    NEW_SCRATCH(double, most, cells->node_count, error);
-    NEW_SCRATCH(int32_t, needed, cells->node_count, error);
-    NEW_SCRATCH(bool, needs, parted.node_count, error);
-    for (int64_t i = 0; i < parted.node_count; i++) {
-        memcpy(x + i * dim, cells->x + (int64_t)of[i] * dim, (size_t)dim * sizeof *x);
-        most[of[i]] = (1.0 + COARSE_ROUND_OFF) * dim;
-    }
-    parted.x = x;
-    parted.node = node;
-    stretch_of(&parted, A, &flat);
-    RETURN_IF_ERROR(spacing_of(&parted, A, own, error));
-    RETURN_IF_ERROR(find_needed(&parted, of, needed, needs, error));
-    for (int64_t i = 0; i < parted.node_count && flat; i++) {
-        double flatness = trace(dim, A + i * size);
-        if (flatness > most[of[i]] && needed[of[i]] == needs[i]) {
-            most[of[i]] = (1.0 + COARSE_ROUND_OFF) * flatness;
-            memcpy(stretch + (int64_t)of[i] * size, A + i * size, (size_t)size * sizeof *A);
-            spacing[of[i]] = own[i];
-            *any = true;
+    NEW_SCRATCH(double, spacing, parted.node_count, error);
+    (void)stretch_of(&parted, A);
+    RETURN_IF_ERROR(spacing_of(&parted, A, spacing, error));
+    RETURN_IF_ERROR(lists_by_row(parted.node_count, 1, of, cells->node_count, &ptr, &idx, error));
+    RETURN_IF_ERROR(
+        NEW_ARRAY(&sizes->sides, 2 * (parted.node_count - cells->node_count) * SIDE_COLUMNS(dim), error));
+    for (int64_t n = 0; n < cells->node_count; n++) {
+        for (int64_t i = ptr[n]; i < ptr[n + 1] && ptr[n + 1] - ptr[n] > 1; i++) {
+            double *row = sizes->sides + sizes->side_count++ * SIDE_COLUMNS(dim);
+            row[0] = (double)n;
+            row[1] = side_of[idx[i]];
+            row[2] = spacing[idx[i]];
+            memcpy(row + 3, A + (int64_t)idx[i] * size, (size_t)size * sizeof *A);
         }
     }
     return STATUS_OK;
 }
 
-enum status support_sizes(const struct cells *cells, const int32_t *side, double **stretch, double *spacing,
-                          struct error *error)
+void support_sizes_free(struct support_sizes *sizes)
 {
-    bool any;
-    *stretch = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(stretch, cells->node_count * cells->dim * cells->dim, error));
-    stretch_of(cells, *stretch, &any);
-    RETURN_IF_ERROR(spacing_of(cells, *stretch, spacing, error));
-    if (side != NULL) {
-        RETURN_IF_ERROR(take_flattest(cells, side, *stretch, spacing, &any, error));
+    FREE_ALL(sizes->radius, sizes->stretch, sizes->sides);
+    *sizes = (struct support_sizes){0};
+}
+
+enum status support_sizes(const struct support_options *options, const struct cells *cells,
+                          struct support_sizes *sizes, struct error *error)
+{
+    int dim = cells->dim;
+    RETURN_IF_ERROR(NEW_ARRAY(&sizes->radius, cells->node_count, error));
+    if (options->radius <= 0.0) {
+        RETURN_IF_ERROR(NEW_ARRAY(&sizes->stretch, cells->node_count * dim * dim, error));
+        bool flat = stretch_of(cells, sizes->stretch);
+        RETURN_IF_ERROR(spacing_of(cells, sizes->stretch, sizes->radius, error));
+        RETURN_IF_ERROR(options->side != NULL && options->visibility == VISIBILITY_CELLS
+                            ? make_sides(cells, options->side, sizes, error)
+                            : STATUS_OK);
+        if (!flat) {
+            FREE_ALL(sizes->stretch);
+            sizes->stretch = NULL;
+        }
     }
-    if (!any) {
-        FREE_ALL(*stretch);
-        *stretch = NULL;
+    for (int64_t i = 0; i < sizes->side_count; i++) {
+        sizes->sides[i * SIDE_COLUMNS(dim) + 2] *= options->factor;
     }
-    return STATUS_OK;
+    return support_radii(options, cells->node_count, sizes->radius, sizes->radius, error);
 }
 
 enum status support_radii(const struct support_options *options, int64_t node_count, const double *spacing,

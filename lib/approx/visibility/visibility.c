@@ -82,7 +82,7 @@ static void note_facet(struct visibility *visibility, const int32_t *facet, int3
     int dim = visibility->cells.dim;
     const double *x = visibility->cells.x, *y = x + (int64_t)node * dim;
     double area[3] = {0.0, 0.0, 0.0}, middle[3], from[3], radius = 0.0;
-    double tolerance = COARSE_ROUND_OFF * visibility->grid.supports.radius[node];
+    double tolerance = COARSE_ROUND_OFF * visibility->supports.radius[node];
     face_area_vector(dim, x, facet, area);
     vector_middle(dim, x, dim, facet, middle);
     vector_subtract(dim, y, middle, from);
@@ -120,6 +120,21 @@ static enum status note_face(struct visibility *visibility, int64_t cell, int ve
     return STATUS_OK;
 }
 
+static enum status build_grid(struct visibility *visibility, struct error *error)
+{
+    const struct cells *cells = &visibility->cells;
+    const struct supports *supports = &visibility->supports;
+    NEW_SCRATCH(double, largest, cells->node_count, error);
+    for (int64_t n = 0; n < cells->node_count; n++) {
+        largest[n] = supports->radius[n];
+    }
+    for (int64_t i = 0; i < supports->side_count; i++) {
+        const double *row = supports->sides + i * SIDE_COLUMNS(cells->dim);
+        largest[(int64_t)row[0]] = fmax(largest[(int64_t)row[0]], row[2]);
+    }
+    return point_grid_build(&visibility->grid, cells->dim, cells->node_count, cells->x, largest, error);
+}
+
 enum status visibility_build(const struct cells *cells, struct supports supports, enum visibility_rule rule,
                              const int32_t *cell_side, struct visibility *visibility, struct error *error)
 {
@@ -130,9 +145,8 @@ enum status visibility_build(const struct cells *cells, struct supports supports
     } else {
         *visibility = (struct visibility){.cells = *cells};
     }
-    RETURN_IF_ERROR(
-        point_grid_build(&visibility->grid, cells->dim, cells->node_count, cells->x, supports.radius, error));
-    visibility->grid.supports = supports;
+    visibility->supports = supports;
+    RETURN_IF_ERROR(build_grid(visibility, error));
     if (visibility->across == NULL) {
         return STATUS_OK;
     }

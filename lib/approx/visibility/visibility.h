@@ -10,6 +10,7 @@
 
 #include "approx/cells/cells.h"
 #include "approx/points/point_grid.h"
+#include "approx/points/supports.h"
 
 /* The neighbours among the nodes within their radius: if there are cells, those visible through these; or
  * all. */
@@ -22,10 +23,12 @@ extern const char *const visibility_names[VISIBILITY_RULE_COUNT];
  * a node of the cells on the point's side. So shape functions have a kink at an interface, like a
  * displacement where the stiffness jumps. Points of faces and nodes on an interface take the lowest of the
  * sides that meet there, so that the field has a single value there. The arrays of the cells, their sides and
- * the radii are the caller's and must outlive this. */
+ * the supports are the caller's and must outlive this. */
 struct visibility {
     struct cells cells;
-    struct point_grid grid;   /* of the nodes; by distance, or without cells, there is nothing else */
+    struct supports supports;
+    struct point_grid grid;   /* of the nodes with the largest radius of each; by distance, or without cells,
+                                 there is nothing else */
     const int32_t *cell_side; /* of each cell: its side of the interfaces at which sight ends; NULL: none */
     int32_t *node_side;       /* of each node: the side, -1 on an interface; NULL without interfaces */
     int32_t *across;          /* cells_across */

@@ -14,12 +14,12 @@ enum content {
     INDEX,         /* index of a row of section index_of */
     INDEX_OR_NONE, /* the same, or -1 */
     BELOW,         /* not an index, but from 0 to less than the rows of index_of */
-    STRETCH,       /* symmetric matrices without an eigenvalue below 1 */
+    STRETCH,       /* the last columns: symmetric matrices without an eigenvalue below 1 */
     LIST           /* the start of each list in the .idx of the same name, and the end of the last one */
 };
 
 /* The columns of a section: a number, or one of these. */
-enum { COLS_DIM = -1, COLS_DIM_PLUS_1 = -2, COLS_DIM_SQUARED = -3, COLS_ANY = -4 };
+enum { COLS_DIM = -1, COLS_DIM_PLUS_1 = -2, COLS_DIM_SQUARED = -3, COLS_SIDES = -4, COLS_ANY = -5 };
 
 /* The stage that makes a section, in the order of the pipeline. */
 enum section_stage {
@@ -42,7 +42,7 @@ struct section_kind {
     enum section_stage stage;
 };
 
-enum { SECTION_KINDS = 51 };
+enum { SECTION_KINDS = 56 };
 extern const struct section_kind section_kinds[SECTION_KINDS];
 
 /* The entry of a section; of a section X.frame.K or X.frames that of X. NULL: not in the table. */
