@@ -188,6 +188,50 @@ halves() {
         { print }' | ipoints | support | shapefn | mts check
 }
 
+# A core of two cells across between skins of two flat cells, 1000 times as stiff; one end is held, the other moved across.
+@test "a sandwich of few cells: each side of an interface has supports of its own" {
+    cloud -d 2 -k regular -n 21,7 --box 0,0.1,0,0.024 | mts text | awk '
+        BEGIN { split("0 0.001 0.002 0.012 0.022 0.023 0.024", level, " ") }
+        /^# / { on = $2 == "nodes.x" }
+        on && /^[0-9]/ { $2 = level[int($2 / 0.004 + 1.5)] }
+        { print }' | tag -r 'core=box:0,0.002,0.1,0.022' > body.mts 2> note
+    cat > body.scene <<'END'
+[scene]
+dim = 2
+analysis = quasi-static
+[material core]
+region = core
+E = 1000
+nu = 0.3
+[material skin]
+region = body
+E = 1e6
+nu = 0.3
+[displacement held]
+facets = xmin
+components = 0, 0
+[displacement moved]
+facets = xmax
+components = 0, 0.0001
+[output]
+reactions = yes
+END
+    # Quadratic triangles, small strains: 12.206, 12.170, 12.156, 12.151, 12.150 mN/m with 2, 4, .. 32 across.
+    mtled -q body.scene body.mts > u.mts 2> note
+    mts print reactions u.mts | awk 'NR == 2 { exit !(($2 / 0.01215 - 1) ^ 2 < 0.02 ^ 2) }'
+    # A table of the modulus makes the same sides; a constant radius has none.
+    ipoints body.mts | support > lists.mts
+    mts list lists.mts | grep -q '^support.sides'
+    ipoints body.mts | support -R 6mm > balls.mts
+    run -1 grep -q 'sides' <(mts list balls.mts | grep -v '^support.side\b')
+    mts text lists.mts | awk '/^# /{ on = $2 == "support.sides" } on && /^[0-9]/ && !done { $3 = "-1"; done = 1 } { print }' > damaged.txt
+    refused 2 "support.sides: row 0: " shapefn damaged.txt
+    # The result has what its field needs: at the nodes, those on interfaces, too, it is u.
+    mts print nodes.x u.mts > points.tsv
+    interp -p points.tsv -u m -f u u.mts | mts print u - > again.tsv
+    mts print u u.mts | paste - again.tsv | awk '{ if (($2 - $4) ^ 2 > 1e-24) bad = 1 } END { exit bad || NR < 100 }'
+}
+
 # A layer that is 1000 times as stiff, with two cells across, each a quarter as thick as long, within a body; its ends are moved along each other.
 @test "a thin stiff layer within a soft body: as alone, its supports are as flat as its cells" {
     cloud -d 2 -k regular -n 17,11 --box 0,2,0,1 | mts text | awk '
