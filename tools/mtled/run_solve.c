@@ -176,6 +176,9 @@ static void end_step(void *context, int64_t number, double time, const double *u
     if (scene->output.frames > 0 && ends_frame) {
         run_put_frame(run, (int64_t)frame, time, u);
     }
+    if (time < 1.0) {
+        body_fade(body);
+    }
     if (number < steps) {
         body_step(body, scene->duration / (double)steps);
     }

@@ -195,6 +195,10 @@ void body_accept(struct body *body);
 /* Collect the histories of all processes, so that each of them may write a checkpoint. */
 void body_collect_history(struct body *body);
 
+/* With collected histories: where mu only stabilises, in s of (10), (13) and (14), it becomes that of each
+ * material in the last accepted state, by the work of its stress on its strain, with and without memory. */
+void body_fade(struct body *body);
+
 /* First Piola stress of each point at the last evaluation: stress[point_count * 9], caller's order, Pa. */
 void body_stress(struct body *body, double *stress);
 

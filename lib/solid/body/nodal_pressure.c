@@ -130,14 +130,11 @@ static void set_values(struct body *body, struct nodal_pressures *pressures)
     }
 }
 
-void body_limit_bulk(struct body *body, double most)
+void nodal_pressures_renew(struct body *body)
 {
     struct nodal_pressures *pressures = &body->volumes.pressures;
-    double largest = 0.0, bulk = 0.0, limited_bulk = 0.0, least_share = 1.0, least_shear = INFINITY;
-    if (!body->averaged) {
-        return;
-    }
-    pressures->most = most;
+    double most = pressures->most, largest = 0.0, bulk = 0.0, limited_bulk = 0.0, least_share = 1.0,
+           least_shear = INFINITY;
     for (int64_t m = 0; m < body->material_count; m++) {
         const struct material *material = &body->materials[m];
         double rest = nodal_pressure_modulus(material), limited = fmin(rest, most * material->shear_modulus);
@@ -154,6 +151,16 @@ void body_limit_bulk(struct body *body, double most)
                       pressures->limited ? augmented_accuracy * limited_bulk / bulk
                                          : fmin(most_inaccurate, effect * fmax(bulk, 1.0)));
     set_values(body, pressures);
+}
+
+void body_limit_bulk(struct body *body, double most)
+{
+    struct nodal_pressures *pressures = &body->volumes.pressures;
+    if (!body->averaged) {
+        return;
+    }
+    pressures->most = most;
+    nodal_pressures_renew(body);
     memset(pressures->held, 0, (size_t)body->volumes.count * sizeof *pressures->held);
     memset(pressures->change, 0, (size_t)body->volumes.count * sizeof *pressures->change);
 }

@@ -8,6 +8,12 @@
 
 /* The most of s by the shear modulus. */
 static const double points_part = 2.0;
+/* mu where it stabilises. */
+static double stabilising_shear(const struct material *material)
+{
+    return (1.0 - material->faded) * material->shear_modulus;
+}
+
 /* epsilon in 2D and 3D: the compliance of bubbles in regular cells. */
 static const double stabilisation[] = {1.0 / 5.0, 3.0 / 28.0};
 
@@ -54,25 +60,59 @@ static bool share_out(const struct body_input *input, const struct body *body, i
     return at_edge;
 }
 
-/* S_a of the nodal volumes that have a point at an edge. */
-static enum status sum_moduli(const bool *at_edge, struct body *body, struct error *error)
+/* s of a point with nodal pressures; 0: without. */
+static double part_of_point(const struct body *body, int64_t q)
+{
+    const struct material *material = &body->materials[body->material[q]];
+    return nodal_pressure_modulus(material) > 0.0 ? nodal_volume_modulus(material) : 0.0;
+}
+
+/* S_a of the nodal volumes that may have one, which is not 0; -1: none as yet. */
+static void sum_moduli(struct body *body)
+{
+    const struct nodal_volumes *volumes = &body->volumes;
+    for (int64_t a = 0; a < volumes->count && volumes->modulus != NULL; a++) {
+        double sum = 0.0;
+        for (int64_t i = volumes->ptr[a]; i < volumes->ptr[a + 1]; i++) {
+            int64_t slot = volumes->slot[i];
+            sum += volumes->share[slot] * part_of_point(body, slot / (body->dim + 1));
+        }
+        volumes->modulus[a] = volumes->modulus[a] == 0.0 ? 0.0 : sum > 0.0 ? sum : -1.0;
+    }
+}
+
+/* Those that have a point at an edge do. */
+static enum status choose_moduli(const bool *at_edge, struct body *body, struct error *error)
 {
     struct nodal_volumes *volumes = &body->volumes;
-    int vertices = body->dim + 1;
     RETURN_IF_ERROR(NEW_ARRAY(&volumes->direct, body->point_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&volumes->modulus, volumes->count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&volumes->mean, volumes->count, error));
-    for (int64_t a = 0; a < volumes->count; a++) {
-        double sum = 0.0;
-        bool is_near = false;
-        for (int64_t i = volumes->ptr[a]; i < volumes->ptr[a + 1]; i++) {
-            int64_t slot = volumes->slot[i], q = slot / vertices;
-            is_near = is_near || at_edge[q];
-            sum += volumes->share[slot] * nodal_volume_modulus(&body->materials[body->material[q]]);
+    for (int64_t slot = 0; slot < body->point_count * (body->dim + 1); slot++) {
+        if (at_edge[slot / (body->dim + 1)]) {
+            volumes->modulus[volumes->of_point[slot]] = 1.0;
         }
-        volumes->modulus[a] = is_near ? sum : 0.0;
     }
+    sum_moduli(body);
     return STATUS_OK;
+}
+
+void nodal_volumes_renew(struct body *body)
+{
+    if (body->averaged) {
+        sum_moduli(body);
+        nodal_pressures_renew(body);
+    }
+}
+
+/* Whether nodal pressures act, once the material has relaxed. */
+static bool may_have_pressure(const struct material *material)
+{
+    struct material relaxed = *material;
+    for (int k = 0; k < material->prony_terms; k++) {
+        relaxed.faded += material->prony[2 * k];
+    }
+    return nodal_pressure_modulus(&relaxed) > 0.0;
 }
 
 enum status nodal_volumes_build(const struct body_input *input, struct body *body, struct error *error)
@@ -95,13 +135,13 @@ enum status nodal_volumes_build(const struct body_input *input, struct body *bod
         keys[s] = (struct placed){(double)(node * body->material_count + group), s};
     }
     for (int64_t q = 0; q < body->point_count; q++) {
-        if (nodal_pressure_modulus(&body->materials[body->material[q]]) > 0.0) {
+        if (may_have_pressure(&body->materials[body->material[q]])) {
             at_edge[q] = share_out(input, body, q, volumes->share + q * vertices);
         }
     }
     RETURN_IF_ERROR(number_volumes(volumes, keys, slots, error));
     if (input->at_edge != NULL) {
-        RETURN_IF_ERROR(sum_moduli(at_edge, body, error));
+        RETURN_IF_ERROR(choose_moduli(at_edge, body, error));
     }
     RETURN_IF_ERROR(body_share_volumes(body, error));
     RETURN_IF_ERROR(nodal_pressures_build(body, error));
@@ -121,7 +161,7 @@ double nodal_volume_part(double modulus, double shear)
 
 double nodal_volume_modulus(const struct material *material)
 {
-    return nodal_volume_part(material_bulk(material), material->shear_modulus);
+    return nodal_volume_part(material_bulk(material), stabilising_shear(material));
 }
 
 double nodal_pressure_modulus(const struct material *material)
@@ -131,7 +171,7 @@ double nodal_pressure_modulus(const struct material *material)
 
 double nodal_pressure_compliance(const struct material *material, int dim)
 {
-    return stabilisation[dim - 2] / ((dim + 2) * material->shear_modulus);
+    return stabilisation[dim - 2] / ((dim + 2) * stabilising_shear(material));
 }
 
 static bool is_logarithmic(const struct body *body, int64_t point)
@@ -205,8 +245,7 @@ static void average_strains(struct body *body)
         }
         for (int64_t i = volumes->ptr[a]; i < volumes->ptr[a + 1]; i++) {
             int64_t slot = volumes->slot[i], q = slot / vertices;
-            double modulus = nodal_volume_modulus(&body->materials[body->material[q]]);
-            sum += volumes->share[slot] * modulus * strain(body, q);
+            sum += volumes->share[slot] * part_of_point(body, q) * strain(body, q);
         }
         volumes->mean[a] = sum / volumes->modulus[a];
     }

@@ -39,6 +39,9 @@ void nodal_volumes_evaluate(struct body *body);
 double nodal_volume_part(double modulus, double shear);
 double nodal_volume_modulus(const struct material *material);
 
+/* After a change of the shares of mu that have faded: S_a and A. */
+void nodal_volumes_renew(struct body *body);
+
 /* Pressure p_q at the last evaluation, Pa; negative in compression. */
 double nodal_volume_pressure(const struct body *body, int64_t point);
 
@@ -49,6 +52,7 @@ double nodal_volume_energy(const struct body *body, int64_t point);
 
 /* Build A for nodal volumes whose points and shares are set. */
 MUST_CHECK enum status nodal_pressures_build(struct body *body, struct error *error);
+void nodal_pressures_renew(struct body *body);
 void nodal_pressures_free(struct nodal_pressures *pressures);
 
 /* body->volumes.pressure = A^-1 content, by all threads of a parallel region together. With several

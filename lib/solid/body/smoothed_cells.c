@@ -59,7 +59,7 @@ static enum status set_face_gradients(struct body *body, struct error *error)
 struct variance_moduli smoothed_cells_moduli(const struct material *material)
 {
     struct variance_moduli moduli = {.rest = material_at_rest(material)};
-    moduli.bulk = nodal_volume_part(material_bulk(material), moduli.rest.along);
+    moduli.bulk = nodal_volume_part(material_bulk(material), (1.0 - material->faded) * moduli.rest.along);
     for (int f = 0; f < moduli.rest.families; f++) {
         moduli.rest.fibre[f] = nodal_volume_part(moduli.rest.fibre[f], moduli.rest.along);
     }
@@ -83,13 +83,14 @@ static enum status set_fibres(struct body *body, struct error *error)
     return STATUS_OK;
 }
 
-/* The moduli of the variance in each cell: by its own volume, or in a cell that others are merged with by
- * that of the group, and in those none. */
-static enum status set_variance_moduli(struct body *body, struct error *error)
+void smoothed_cells_renew(struct body *body)
 {
     struct smoothed_cells *smoothed = &body->cells;
-    RETURN_IF_ERROR(NEW_ARRAY(&smoothed->variance_shear, body->point_count + BODY_POINT_PADDING, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&smoothed->variance_bulk, body->point_count + BODY_POINT_PADDING, error));
+    if (!body->smoothed) {
+        return;
+    }
+    memset(smoothed->variance_shear, 0, (size_t)body->point_count * sizeof *smoothed->variance_shear);
+    memset(smoothed->variance_bulk, 0, (size_t)body->point_count * sizeof *smoothed->variance_bulk);
     for (int64_t q = 0; q < body->point_count; q++) {
         int64_t cell = smoothed_cells_group(body, q);
         struct variance_moduli moduli = smoothed_cells_moduli(&body->materials[body->material[cell]]);
@@ -97,7 +98,6 @@ static enum status set_variance_moduli(struct body *body, struct error *error)
         smoothed->variance_shear[cell] += volume * moduli.rest.shear;
         smoothed->variance_bulk[cell] += volume * moduli.bulk;
     }
-    return set_fibres(body, error);
 }
 
 enum status smoothed_cells_build(const struct body_input *input, struct body *body, struct error *error)
@@ -105,7 +105,10 @@ enum status smoothed_cells_build(const struct body_input *input, struct body *bo
     struct smoothed_cells *smoothed = &body->cells;
     int64_t entries = body->point_count * body->dim * body->dim + BODY_POINT_PADDING;
     RETURN_IF_ERROR(set_linear_gradients(&input->cells, body, error));
-    RETURN_IF_ERROR(set_variance_moduli(body, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&smoothed->variance_shear, body->point_count + BODY_POINT_PADDING, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&smoothed->variance_bulk, body->point_count + BODY_POINT_PADDING, error));
+    smoothed_cells_renew(body);
+    RETURN_IF_ERROR(set_fibres(body, error));
     RETURN_IF_ERROR(NEW_ARRAY(&smoothed->interpolant, entries, error));
     RETURN_IF_ERROR(smoothed_rows_build(input, body, error));
     RETURN_IF_ERROR(nodal_offsets_build(input, body, error));

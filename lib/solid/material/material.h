@@ -29,6 +29,7 @@ struct material {
     const double *prony;  /* g and tau, s, of each term of a Prony series, sum g < 1; the caller's; the moduli
                              above are then the instantaneous ones. The body relaxes: W and P here do not */
     int prony_terms;      /* 0: elastic */
+    double faded;         /* the share of mu that the body takes as relaxed where mu only stabilises */
 };
 
 /* Moduli from Young's modulus (Pa, > 0) and Poisson's ratio (-1 < nu < .5). */
