@@ -48,12 +48,12 @@ static bool agree(int64_t number)
 static void compare_processes(const struct run *run)
 {
     const struct run_checkpoint *checkpoint = &run->checkpoint;
-    int64_t set = 0;
+    uint64_t set = 0;
     for (const char *letter = processor_best_set(); *letter != '\0'; letter++) {
-        set = 256 * set + *letter;
+        set = 31 * set + (unsigned char)*letter;
     }
     if (!agree(checkpoint->identity.scene) || !agree(checkpoint->identity.input) ||
-        !agree(checkpoint->file != NULL) || !agree(set)) {
+        !agree(checkpoint->file != NULL) || !agree((int64_t)(set >> 1))) {
         tool_fail(run->tool, STATUS_INPUT,
                   "the processes do not read the same: give all the same scene, tables, stream and options, "
                   "and processors of one kind");

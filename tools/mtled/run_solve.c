@@ -55,7 +55,8 @@ static void judge_statics(struct run *run, const struct statics_report *report)
             run->folds.seen                            ? "" /* it is named with the fold */
             : system_has_friction(&run->model->system) ? slides
             : run->model->system.contact_count > 0
-                ? ": a larger tolerance, a finer cloud at the contacts, sides for a rigid surface that ends on "
+                ? ": a larger tolerance, a finer cloud at the contacts, sides for a rigid surface that ends "
+                  "on "
                   "the body, or supports against rigid motion may help"
                 : ": it hardly resists some motion, as a slender body that has buckled may turn: a larger "
                   "tolerance, or supports against that motion may help";

@@ -167,8 +167,11 @@ static enum status make_sides(const struct cells *cells, const int32_t *side, st
     (void)stretch_of(&parted, A);
     RETURN_IF_ERROR(spacing_of(&parted, A, spacing, error));
     RETURN_IF_ERROR(lists_by_row(parted.node_count, 1, of, cells->node_count, &ptr, &idx, error));
-    RETURN_IF_ERROR(
-        NEW_ARRAY(&sizes->sides, 2 * (parted.node_count - cells->node_count) * SIDE_COLUMNS(dim), error));
+    int64_t rows = 0;
+    for (int64_t n = 0; n < cells->node_count; n++) {
+        rows += ptr[n + 1] - ptr[n] > 1 ? ptr[n + 1] - ptr[n] : 0;
+    }
+    RETURN_IF_ERROR(NEW_ARRAY(&sizes->sides, rows * SIDE_COLUMNS(dim), error));
     for (int64_t n = 0; n < cells->node_count; n++) {
         for (int64_t i = ptr[n]; i < ptr[n + 1] && ptr[n + 1] - ptr[n] > 1; i++) {
             double *row = sizes->sides + sizes->side_count++ * SIDE_COLUMNS(dim);
