@@ -76,12 +76,12 @@ static enum status adaptive_cell_points(const struct stream *stream, const struc
                                         struct error *error)
 {
     const struct section *recorded = stream_find(stream, "support.radius");
-    FREED_BY(support_sizes_free) struct support_sizes made = {0};
+    FREED_BY(supports_free) struct supports made = {0};
     struct supports supports;
     if (recorded == NULL || options->given_radius) {
         RETURN_IF_ERROR(
             stage_sizes(stream, &options->refinement.support, cells->node_count, cells->x, &made, error));
-        supports = (struct supports){made.radius, made.stretch, made.side_count, made.sides};
+        supports = made;
     } else {
         RETURN_IF_ERROR(stream_supports(stream, "support", &supports, error));
     }

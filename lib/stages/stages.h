@@ -27,7 +27,7 @@ MUST_CHECK enum status stage_ipoints(struct stream *stream, const struct ipoints
 /* The supports as the stage `support` sets them: constant balls, or a factor times the local spacing, by
  * support_sizes if there are cells. */
 MUST_CHECK enum status stage_sizes(const struct stream *stream, const struct support_options *options,
-                                   int64_t node_count, const double *x, struct support_sizes *sizes,
+                                   int64_t node_count, const double *x, struct supports *sizes,
                                    struct error *error);
 
 /* Statistics of one of the lists of `support`, */
@@ -51,8 +51,8 @@ struct support_report {
 MUST_CHECK enum status stage_interfaces(const struct stream *stream, const char *names, int32_t **side,
                                         struct error *error);
 
-/* Add the sections of support: support.radius, support.side where options->side is given, and the lists nbr,
- * facepoint and node. */
+/* Add the sections of support: those of stage_record, support.side where options->side is given, and the
+ * lists nbr, facepoint and node. */
 MUST_CHECK enum status stage_support(struct stream *stream, const struct support_options *options,
                                      struct support_report *report, struct error *error);
 
@@ -78,19 +78,19 @@ MUST_CHECK enum status mls_apply(const struct mls_texts *texts, struct mls *mls,
 MUST_CHECK enum status stage_sides(const struct stream *stream, const char *prefix, const int32_t **side,
                                    struct error *error);
 
-/* Views of PREFIX.radius and PREFIX.stretch, the settings from the attributes, and a view of PREFIX.side, if
- * it exists, as recorded->support.side. Settings that are not recorded are those of support_defaults().
- * PREFIX is support; or parameters, for the field that mtled computed. */
+/* Views of PREFIX.radius, PREFIX.stretch and PREFIX.sides, the settings from the attributes, and a view of
+ * PREFIX.side, if it exists, as recorded->support.side. Settings that are not recorded are those of
+ * support_defaults(). PREFIX is support; or parameters, for the field that mtled computed. */
 MUST_CHECK enum status stage_recorded(const struct stream *stream, const char *prefix,
                                       struct field_shapes *recorded, struct error *error);
 
-/* Put the supports of the nodes as support.radius and support.stretch, with the settings. */
+/* Put the supports of the nodes as support.radius, support.stretch and support.sides, with the settings. */
 MUST_CHECK enum status stage_record(struct stream *stream, const struct field_shapes *recorded,
                                     int64_t node_count, struct error *error);
 
 /* The field that mtled computed is u_h(x) = sum_j phi_j(x) d_j. Its results hold the parameters d_j in the
- * sections parameters and parameters.frame.K, and the supports of phi_j in parameters.radius and
- * parameters.stretch, as `recorded`.
+ * sections parameters and parameters.frame.K, and the supports of phi_j in parameters.radius,
+ * parameters.stretch and parameters.sides, as `recorded`.
  * The section to evaluate for a field: for u and u.frame.K their parameters, if they exist and fit; else the
  * field itself, whose values are taken as parameters. */
 const struct section *solved_parameters(const struct stream *stream, const struct field_shapes *recorded,

@@ -9,7 +9,7 @@
 #include <string.h>
 
 enum status stage_sizes(const struct stream *stream, const struct support_options *options,
-                        int64_t node_count, const double *x, struct support_sizes *sizes, struct error *error)
+                        int64_t node_count, const double *x, struct supports *sizes, struct error *error)
 {
     struct cells cells;
     RETURN_IF_ERROR(stream_cells(stream, false, &cells, error));
@@ -129,10 +129,9 @@ enum status stage_support(struct stream *stream, const struct support_options *o
     if (cells.count == 0) {
         actual.visibility = VISIBILITY_DISTANCE;
     }
-    FREED_BY(support_sizes_free) struct support_sizes sizes = {0};
+    FREED_BY(supports_free) struct supports sizes = {0};
     RETURN_IF_ERROR(stage_sizes(stream, &actual, cells.node_count, cells.x, &sizes, error));
-    const struct field_shapes shapes = {
-        {sizes.radius, sizes.stretch, sizes.side_count, sizes.sides}, actual, actual.mls};
+    const struct field_shapes shapes = {sizes, actual, actual.mls};
     RETURN_IF_ERROR(stage_record(stream, &shapes, cells.node_count, error));
     return stage_lists(stream, &actual, report, error);
 }
@@ -213,9 +212,9 @@ static enum status copy_values(double **copy, const double *values, int64_t coun
 /* A copy of the supports; those on interfaces as by support_sizes for these sides, and as wide as recorded.
  */
 static enum status renew_sides(const struct cells *cells, const struct field_shapes *recorded,
-                               const int32_t *side, struct support_sizes *kept, struct error *error)
+                               const int32_t *side, struct supports *kept, struct error *error)
 {
-    FREED_BY(support_sizes_free) struct support_sizes fresh = {0};
+    FREED_BY(supports_free) struct supports fresh = {0};
     struct support_options options = recorded->support;
     const struct supports *supports = &recorded->supports;
     int dim = cells->dim;
@@ -234,14 +233,14 @@ static enum status renew_sides(const struct cells *cells, const struct field_sha
 
 enum status stage_renew(struct stream *stream, const int32_t *side, struct error *error)
 {
-    FREED_BY(support_sizes_free) struct support_sizes kept = {0};
+    FREED_BY(supports_free) struct supports kept = {0};
     struct field_shapes recorded;
     struct support_report report;
     struct cells cells;
     RETURN_IF_ERROR(stream_cells(stream, true, &cells, error));
     RETURN_IF_ERROR(stage_recorded(stream, "support", &recorded, error));
     RETURN_IF_ERROR(renew_sides(&cells, &recorded, side, &kept, error));
-    recorded.supports = (struct supports){kept.radius, kept.stretch, kept.side_count, kept.sides};
+    recorded.supports = kept;
     recorded.support.side = side;
     sections_remove(stream, MADE_WITH_SUPPORT, MADE_WITH_SHAPES);
     RETURN_IF_ERROR(stage_face_points(stream, error));

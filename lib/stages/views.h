@@ -65,11 +65,12 @@ void groups_free(struct groups *groups);
 /* Faces of the cells; those on the boundary come first. The view is not to be freed. */
 MUST_CHECK enum status stream_faces(const struct stream *stream, struct faces *faces, struct error *error);
 
-/* A CSR list: PREFIX.ptr (rows + 1), PREFIX.idx (ascending in each row), and PREFIX.widen if it exists. */
+/* A CSR list: PREFIX.ptr (rows + 1), PREFIX.idx (ascending in each row), and PREFIX.widen and PREFIX.side if
+ * they exist. */
 MUST_CHECK enum status stream_neighbours(const struct stream *stream, const char *prefix, int64_t rows,
                                          struct neighbours *lists, struct error *error);
 
-/* The supports of the nodes: PREFIX.radius, and PREFIX.stretch if it exists. */
+/* The supports of the nodes: PREFIX.radius, and PREFIX.stretch and PREFIX.sides if they exist. */
 MUST_CHECK enum status stream_supports(const struct stream *stream, const char *prefix,
                                        struct supports *supports, struct error *error);
 

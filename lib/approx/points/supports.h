@@ -6,11 +6,11 @@
 
 /* Ellipsoids |A_j (x - x_j)| < R_j. A node on an interface at which supports stop has one for each side, seen
  * from there; that of the node itself is seen where sides do not count. */
-struct supports {
-    const double *radius;  /* R_j, m */
-    const double *stretch; /* A_j, symmetric, dim * dim each, no eigenvalue below 1; NULL: all are balls */
+struct supports {    /* views, or made by support_sizes */
+    double *radius;  /* R_j, m */
+    double *stretch; /* A_j, symmetric, dim * dim each, no eigenvalue below 1; NULL: all are balls */
     int64_t side_count;
-    const double *sides; /* side_count rows of node, side, R, A; ascending by node, then side */
+    double *sides; /* side_count rows of node, side, R, A; ascending by node, then side */
 };
 
 /* Columns of supports.sides. */

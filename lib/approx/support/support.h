@@ -45,14 +45,9 @@ struct neighbours {
 MUST_CHECK enum status nodes_spacing(int dim, int64_t node_count, const double *x, double *spacing,
                                      struct error *error);
 
-/* The supports of nodes, made. */
-struct support_sizes {
-    double *radius, *stretch, *sides; /* as struct supports */
-    int64_t side_count;
-};
-void support_sizes_free(struct support_sizes *sizes);
+void supports_free(struct supports *made);
 
-/* The supports of the nodes of cells, without cells only the radii. They are balls, and longer where the
+/* *made: the supports of the nodes of cells. They are balls, and longer where the
  * cells around the node are: T is the mean of x (x) x over the edges of these cells, with eigenvalues t_1 >=
  * t_i. A has the eigenvectors of T, and the squares of its eigenvalues are max(1, t_1 / t_i - 3 dim + 1), at
  * most those of supports that are 32 times as long as wide. Of a lattice of cubes that are cut along one
@@ -63,7 +58,7 @@ void support_sizes_free(struct support_sizes *sizes);
  * On an interface each side has the supports that it has alone: a layer within a body must not have wider
  * ones than by itself. With a constant radius all are balls. */
 MUST_CHECK enum status support_sizes(const struct support_options *options, const struct cells *cells,
-                                     struct support_sizes *sizes, struct error *error);
+                                     struct supports *made, struct error *error);
 
 /* radius[node_count], m, from the options and the local spacing. */
 MUST_CHECK enum status support_radii(const struct support_options *options, int64_t node_count,

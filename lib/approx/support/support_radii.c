@@ -150,7 +150,7 @@ static enum status part_sides(const struct cells *cells, const int32_t *side, in
 }
 
 /* The supports of nodes on interfaces, of each side as of its cells alone; R: the spacing. */
-static enum status make_sides(const struct cells *cells, const int32_t *side, struct support_sizes *sizes,
+static enum status make_sides(const struct cells *cells, const int32_t *side, struct supports *sizes,
                               struct error *error)
 {
     int dim = cells->dim, size = dim * dim;
@@ -184,14 +184,14 @@ static enum status make_sides(const struct cells *cells, const int32_t *side, st
     return STATUS_OK;
 }
 
-void support_sizes_free(struct support_sizes *sizes)
+void supports_free(struct supports *sizes)
 {
     FREE_ALL(sizes->radius, sizes->stretch, sizes->sides);
-    *sizes = (struct support_sizes){0};
+    *sizes = (struct supports){0};
 }
 
 enum status support_sizes(const struct support_options *options, const struct cells *cells,
-                          struct support_sizes *sizes, struct error *error)
+                          struct supports *sizes, struct error *error)
 {
     int dim = cells->dim;
     RETURN_IF_ERROR(NEW_ARRAY(&sizes->radius, cells->node_count, error));
