@@ -66,7 +66,7 @@ static inline void scattered_free(struct scattered *cloud)
 
 /* Supports, with the stretch given beforehand, and shape functions of all points of a cloud. */
 struct table {
-    const double *stretch;
+    double *stretch;
     double *radius, *phi, *dphi;
     struct visibility space;
     struct neighbours lists;

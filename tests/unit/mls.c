@@ -106,7 +106,7 @@ static void evaluate(const struct mls *mls, const struct scattered *cloud, const
     enum mls_verdict verdict;
     struct mls_support support = {.x = x,
                                   .nodes = cloud->x,
-                                  .supports = {table->radius, table->stretch},
+                                  .supports = {.radius = table->radius, .stretch = table->stretch},
                                   .widen = table->lists.widen[p],
                                   .neighbours = table->lists.idx + table->lists.ptr[p],
                                   .count = table->lists.ptr[p + 1] - table->lists.ptr[p]};
