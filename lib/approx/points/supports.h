@@ -1,6 +1,7 @@
 /* The supports of nodes, equation (1) of lib/README.md. */
 #pragma once
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -45,10 +46,14 @@ static inline int64_t supports_row(const struct supports *supports, int dim, int
 static inline struct own_support supports_seen(const struct supports *supports, int dim, int64_t node,
                                                int32_t side)
 {
-    int64_t row = supports_row(supports, dim, node, side);
+    int64_t row = side >= 0 ? supports_row(supports, dim, node, side) : -1;
     if (row >= 0) {
-        const double *own = supports->sides + row * SIDE_COLUMNS(dim);
-        return (struct own_support){own[2], own + 3};
+        const double *own = supports->sides + row * SIDE_COLUMNS(dim), *A = own + 3;
+        bool ball = true;
+        for (int k = 0; k < dim * dim; k++) {
+            ball = ball && A[k] == (k % (dim + 1) == 0 ? 1.0 : 0.0);
+        }
+        return (struct own_support){own[2], ball ? NULL : A};
     }
     return (struct own_support){supports->radius[node],
                                 supports->stretch != NULL ? supports->stretch + node * dim * dim : NULL};

@@ -26,6 +26,7 @@ struct search {
 struct worker {
     struct index_list list;
     struct visibility_work visibility;
+    int32_t side; /* from which the current point sees supports: its own, or -1 far from interfaces */
     struct mls_work work;
     struct placed *order;
     double *gradient;
@@ -47,7 +48,7 @@ static double distance2(const struct search *search, const double *x, int64_t no
 {
     int dim = search->visibility->cells.dim;
     double difference[3];
-    struct own_support own = supports_seen(&search->visibility->supports, dim, node, worker->visibility.side);
+    struct own_support own = supports_seen(&search->visibility->supports, dim, node, worker->side);
     vector_subtract(dim, x, search->visibility->cells.x + node * dim, difference);
     return vector_square(dim, own.stretch, difference);
 }
@@ -80,17 +81,12 @@ static double spacing_within(const struct search *search, const double *x, const
 {
     const struct supports *supports = &search->visibility->supports;
     int dim = search->visibility->cells.dim;
+    bool limited = count == search->options->most;
     double farthest = 0.0;
-    if (count == search->options->most) {
-        for (int64_t i = 0; i < count; i++) {
-            farthest = fmax(farthest, distance2(search, x, index[i], worker));
-        }
-        farthest = sqrt(farthest);
-    } else {
-        for (int64_t i = 0; i < count; i++) {
-            farthest = fmax(farthest, supports_seen(supports, dim, index[i], worker->visibility.side).radius);
-        }
-        farthest *= widen;
+    for (int64_t i = 0; i < count; i++) {
+        farthest =
+            fmax(farthest, limited ? sqrt(distance2(search, x, index[i], worker))
+                                   : supports_seen(supports, dim, index[i], worker->side).radius * widen);
     }
     double unit_ball = dim == 2 ? 3.141592653589793 : 4.1887902047863905;
     return farthest * pow(unit_ball / (double)count, 1.0 / dim);
@@ -122,7 +118,7 @@ static enum status judge(const struct search *search, const double *x, const int
                                   .nodes = search->visibility->cells.x,
                                   .supports = *supports,
                                   .widen = found->widen,
-                                  .side = worker->visibility.side,
+                                  .side = worker->side,
                                   .neighbours = index,
                                   .count = count};
     double largest2 = 0.0;
@@ -142,24 +138,36 @@ static enum status judge(const struct search *search, const double *x, const int
     return STATUS_OK;
 }
 
+/* Whether any of these nodes has supports by sides. */
+static bool on_interface(const struct visibility *visibility, const int32_t *index, int64_t count)
+{
+    bool any = false;
+    for (int64_t i = 0; i < count && visibility->supports.side_count > 0 && visibility->node_side != NULL;
+         i++) {
+        any = any || visibility->node_side[index[i]] < 0;
+    }
+    return any;
+}
+
 /* Replace the neighbours from `first` on of the worker's list by those within the supports times
  * found->widen. */
 static enum status gather(const struct search *search, const double *x, int64_t first, struct worker *worker,
                           const struct found *found, struct error *error)
 {
     const struct visibility *visibility = search->visibility;
-    bool balls = visibility->supports.stretch == NULL && visibility->supports.side_count == 0;
+    int dim = visibility->cells.dim;
     worker->list.count = first;
     RETURN_IF_ERROR(point_grid_query(&visibility->grid, x, found->widen, &worker->list, error));
     int32_t *index = worker->list.index + first;
-    int64_t near = worker->list.count - first, count = balls ? near : 0;
-    for (int64_t i = 0; i < near && !balls; i++) {
+    int64_t near = worker->list.count - first, count = 0;
+    bool by_sides = on_interface(visibility, index, near);
+    worker->side = by_sides ? worker->visibility.side : -1;
+    for (int64_t i = 0; i < near; i++) {
         double radius =
-            supports_seen(&visibility->supports, visibility->cells.dim, index[i], worker->visibility.side)
-                .radius *
-            found->widen;
+            supports_seen(&visibility->supports, dim, index[i], worker->side).radius * found->widen;
         index[count] = index[i];
-        count += distance2(search, x, index[i], worker) < radius * radius;
+        count += (visibility->supports.stretch == NULL && !by_sides) ||
+                 distance2(search, x, index[i], worker) < radius * radius;
     }
     if (search->looks) {
         RETURN_IF_ERROR(
@@ -289,7 +297,7 @@ static enum status build_chunk(const struct search *search, int64_t first, int64
         }
         lists->widen[p] = found.widen;
         if (lists->side != NULL) {
-            lists->side[p] = worker->visibility.side;
+            lists->side[p] = worker->side;
         }
         search->steepness[p] = found.steepness;
         lists->ptr[p + 1] = count;
@@ -334,7 +342,7 @@ static enum status build_chunks(const struct search *search, struct neighbours *
     enum status failure = STATUS_OK;
 #pragma omp parallel
     {
-        struct worker worker = {.visibility.side = -1};
+        struct worker worker = {.side = -1};
 #pragma omp for ordered schedule(dynamic, 1)
         for (int64_t c = 0; c < chunk_count; c++) {
             struct error own;
