@@ -5,8 +5,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Ellipsoids |A_j (x - x_j)| < R_j. A node on an interface at which supports stop has one for each side, seen
- * from there; that of the node itself is seen where sides do not count. */
+/* Ellipsoids |A_j (x - x_j)| < R_j. A node on an interface at which supports stop, where cells are flat, has
+ * one for each side, seen from there; that of the node itself is seen where sides do not count. */
 struct supports {    /* views, or made by support_sizes */
     double *radius;  /* R_j, m */
     double *stretch; /* A_j, symmetric, dim * dim each, no eigenvalue below 1; NULL: all are balls */

@@ -55,8 +55,8 @@ void supports_free(struct supports *made);
  * edge|, and a little more where A is not 1. A flat lattice becomes one of equilateral triangles, whose
  * second neighbours, at 3^(1/2) spacings, must not be just outside of supports of 1.8.
  *
- * On an interface each side has the supports that it has alone: a layer within a body must not have wider
- * ones than by itself. With a constant radius all are balls. */
+ * On an interface where cells are flat each side has the supports that it has alone: a layer within a body
+ * must not have wider ones than by itself. With a constant radius all are balls. */
 MUST_CHECK enum status support_sizes(const struct support_options *options, const struct cells *cells,
                                      struct supports *made, struct error *error);
 

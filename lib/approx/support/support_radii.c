@@ -149,7 +149,8 @@ static enum status part_sides(const struct cells *cells, const int32_t *side, in
     return STATUS_OK;
 }
 
-/* The supports of nodes on interfaces, of each side as of its cells alone; R: the spacing. */
+/* The supports of nodes on interfaces where cells are flat, of each side as of its cells alone; R: the
+ * spacing. */
 static enum status make_sides(const struct cells *cells, const int32_t *side, struct supports *sizes,
                               struct error *error)
 {
@@ -167,13 +168,13 @@ static enum status make_sides(const struct cells *cells, const int32_t *side, st
     (void)stretch_of(&parted, A);
     RETURN_IF_ERROR(spacing_of(&parted, A, spacing, error));
     RETURN_IF_ERROR(lists_by_row(parted.node_count, 1, of, cells->node_count, &ptr, &idx, error));
-    int64_t rows = 0;
+    RETURN_IF_ERROR(NEW_ARRAY(&sizes->sides, parted.node_count * SIDE_COLUMNS(dim), error));
     for (int64_t n = 0; n < cells->node_count; n++) {
-        rows += ptr[n + 1] - ptr[n] > 1 ? ptr[n + 1] - ptr[n] : 0;
-    }
-    RETURN_IF_ERROR(NEW_ARRAY(&sizes->sides, rows * SIDE_COLUMNS(dim), error));
-    for (int64_t n = 0; n < cells->node_count; n++) {
-        for (int64_t i = ptr[n]; i < ptr[n + 1] && ptr[n + 1] - ptr[n] > 1; i++) {
+        bool flat = trace(dim, sizes->stretch + n * size) > dim;
+        for (int64_t i = ptr[n]; i < ptr[n + 1]; i++) {
+            flat = flat || trace(dim, A + (int64_t)idx[i] * size) > dim;
+        }
+        for (int64_t i = ptr[n]; i < ptr[n + 1] && flat && ptr[n + 1] - ptr[n] > 1; i++) {
             double *row = sizes->sides + sizes->side_count++ * SIDE_COLUMNS(dim);
             row[0] = (double)n;
             row[1] = side_of[idx[i]];
