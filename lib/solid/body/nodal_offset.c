@@ -9,15 +9,6 @@
  * junctions of prescribed and free boundary, where the field is singular, have none. */
 static const double offset_factor = 0.08;
 
-static double long_term_modulus(const struct material *material)
-{
-    double left = 1.0;
-    for (int k = 0; k < material->prony_terms; k++) {
-        left -= material->prony[2 * k];
-    }
-    return left * material->shear_modulus;
-}
-
 static bool is_at_junction(const struct body *body, int64_t q)
 {
     const double *kept = body->cells.kept;
@@ -42,7 +33,8 @@ enum status nodal_offsets_build(const struct body_input *input, struct body *bod
     double **stiffness = &body->cells.offset_stiffness;
     RETURN_IF_ERROR(NEW_ARRAY(stiffness, body->node_count, error));
     for (int64_t q = 0; q < body->point_count; q++) {
-        double mu = long_term_modulus(&body->materials[body->material[q]]);
+        const struct material *material = &body->materials[body->material[q]];
+        double mu = material_long_term(material) * material->shear_modulus;
         double square = mean_square_edge(&input->cells, body->order.points[q]);
         for (int k = 0; k <= body->dim; k++) {
             (*stiffness)[smoothed_cells_node(body, q, k)] += offset_factor * mu * body->weight[q] / square;

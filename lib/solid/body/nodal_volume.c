@@ -109,9 +109,7 @@ void nodal_volumes_renew(struct body *body)
 static bool may_have_pressure(const struct material *material)
 {
     struct material relaxed = *material;
-    for (int k = 0; k < material->prony_terms; k++) {
-        relaxed.faded += material->prony[2 * k];
-    }
+    relaxed.faded = 1.0 - material_long_term(material);
     return nodal_pressure_modulus(&relaxed) > 0.0;
 }
 

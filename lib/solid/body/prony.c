@@ -197,7 +197,7 @@ static double jump_work(const struct body *body, int64_t q)
     double coupling = stress_coupling_energy(body, q, F, body->J[q]);
     double W = body->weight[q] * (material_isochoric_energy(material, F) + coupling);
     W += body->smoothed ? stress_variance_energy(body, q, &volumetric) : 0.0;
-    return (1.0 - step_of(material, INFINITY).factor) * W;
+    return (1.0 - material_long_term(material)) * W;
 }
 
 /* The state of a block evaluated last becomes its history. The work of the terms is that of their mean. */
@@ -288,7 +288,7 @@ void body_fade(struct body *body)
         }
     }
     for (int64_t m = 0; m < body->material_count; m++) {
-        double most = 1.0 - step_of(&body->materials[m], INFINITY).factor;
+        double most = 1.0 - material_long_term(&body->materials[m]);
         prony->faded[m] = whole[m] > 0.0 ? fmin(fmax(prony->faded[m] / whole[m], 0.0), most) : 0.0;
     }
     take_faded(body);

@@ -81,6 +81,15 @@ double material_pressure(const struct material *material, double J)
     return material_bulk(material) * material_volume_strain(material, J) * material_volume_slope(material, J);
 }
 
+double material_long_term(const struct material *material)
+{
+    double left = 1.0;
+    for (int k = 0; k < material->prony_terms; k++) {
+        left -= material->prony[2 * k];
+    }
+    return left;
+}
+
 double material_bulk(const struct material *material)
 {
     switch (material_laws[material->model]->volume) {

@@ -41,6 +41,9 @@ double material_wave_modulus(const struct material *material);
 /* U''(1), Pa: 0 for laws without U. */
 double material_bulk(const struct material *material);
 
+/* 1 - sum g of a Prony series. */
+double material_long_term(const struct material *material);
+
 /* The energy of small isochoric strains e where fibres begin to be stretched, with the unit vectors a_k along
  * their families: shear |e|^2 + sum_k (2 (along - shear) (|e a_k|^2 - (a_k . e a_k)^2) + 3/2 fibre_k (a_k . e
  * a_k)^2). */
