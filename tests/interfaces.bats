@@ -188,38 +188,30 @@ halves() {
         { print }' | ipoints | support | shapefn | mts check
 }
 
+# on_levels STEP 'HEIGHTS': the rows of nodes of a plane lattice on standard input, at multiples of STEP, at these heights, in m.
+on_levels() {
+    mts text | awk -v step="$1" -v heights="$2" '
+        BEGIN { split(heights, level, " ") }
+        /^# / { on = $2 == "nodes.x" }
+        on && /^[0-9]/ { $2 = level[int($2 / step + 1.5)] }
+        { print }'
+}
+
+# ends_moved Y: a plane scene without materials, one end held and the other moved across.
+ends_moved() {
+    printf '%s\n' '[scene]' 'dim = 2' 'analysis = quasi-static' '[displacement held]' 'facets = xmin' 'components = 0, 0' \
+        '[displacement moved]' 'facets = xmax' "components = 0, $1" '[output]' 'reactions = yes'
+}
+
 # A core of two cells across between skins of two flat cells, 1000 times as stiff; one end is held, the other moved across.
 @test "a sandwich of few cells: each side of an interface has supports of its own" {
-    cloud -d 2 -k regular -n 21,7 --box 0,0.1,0,0.024 | mts text | awk '
-        BEGIN { split("0 0.001 0.002 0.012 0.022 0.023 0.024", level, " ") }
-        /^# / { on = $2 == "nodes.x" }
-        on && /^[0-9]/ { $2 = level[int($2 / 0.004 + 1.5)] }
-        { print }' | tag -r 'core=box:0,0.002,0.1,0.022' > body.mts 2> note
-    cat > body.scene <<'END'
-[scene]
-dim = 2
-analysis = quasi-static
-[material core]
-region = core
-E = 1000
-nu = 0.3
-[material skin]
-region = body
-E = 1e6
-nu = 0.3
-[displacement held]
-facets = xmin
-components = 0, 0
-[displacement moved]
-facets = xmax
-components = 0, 0.0001
-[output]
-reactions = yes
-END
+    cloud -d 2 -k regular -n 21,7 --box 0,0.1,0,0.024 | on_levels 0.004 '0 0.001 0.002 0.012 0.022 0.023 0.024' |
+        tag -r 'core=box:0,0.002,0.1,0.022' > body.mts 2> note
+    { ends_moved 0.0001; printf '[material %s]\nregion = %s\nE = %s\nnu = 0.3\n' core core 1000 skin body 1e6; } > body.scene
     # Quadratic triangles, small strains: 12.206, 12.170, 12.156, 12.151, 12.150 mN/m with 2, 4, .. 32 across.
     mtled -q body.scene body.mts > u.mts 2> note
     mts print reactions u.mts | awk 'NR == 2 { exit !(($2 / 0.01215 - 1) ^ 2 < 0.02 ^ 2) }'
-    # A table of the modulus makes the same sides; a constant radius has none.
+    # A constant radius has none.
     ipoints body.mts | support > lists.mts
     mts list lists.mts | grep -q '^support.sides'
     ipoints body.mts | support -R 6mm > balls.mts
@@ -234,28 +226,9 @@ END
 
 # A layer that is 1000 times as stiff, with two cells across, each a quarter as thick as long, within a body; its ends are moved along each other.
 @test "a thin stiff layer within a soft body: as alone, its supports are as flat as its cells" {
-    cloud -d 2 -k regular -n 17,11 --box 0,2,0,1 | mts text | awk '
-        BEGIN { split("0 0.125 0.25 0.375 0.5 0.53 0.56 0.67 0.78 0.89 1", level, " ") }
-        /^# / { on = $2 == "nodes.x" }
-        on && /^[0-9]/ { $2 = level[int($2 * 10 + 1.5)] }
-        { print }' | tag -r 'layer=box:0,0.5,2,0.56' > body.mts 2> note
-    for material in body:1 layer:1000; do
-        IFS=: read -r name times <<< "$material"
-        printf '[material %s]\nregion = %s\nmu = %s\nkappa = %s\n' "$name" "$name" $((1000 * times)) $((10000 * times))
-    done > body.scene
-    cat >> body.scene <<'END'
-[scene]
-dim = 2
-analysis = quasi-static
-[displacement held]
-facets = xmin
-components = 0, 0
-[displacement moved]
-facets = xmax
-components = 0, 0.01
-[output]
-reactions = yes
-END
+    cloud -d 2 -k regular -n 17,11 --box 0,2,0,1 | on_levels 0.1 '0 0.125 0.25 0.375 0.5 0.53 0.56 0.67 0.78 0.89 1' |
+        tag -r 'layer=box:0,0.5,2,0.56' > body.mts 2> note
+    { ends_moved 0.01; printf '[material %s]\nregion = %s\nmu = %s\nkappa = %s\n' body body 1000 10000 layer layer 1000000 10000000; } > body.scene
     # Quadratic triangles with linear pressures (Taylor and Hood): 3.6824, 3.5976, 3.5608, 3.5474 N/m with 1, 2, 4, 8 across the layer.
     mtled -q body.scene body.mts 2> note | mts print reactions - | awk 'NR == 2 { exit !(($2 / 3.547 - 1) ^ 2 < 0.05 ^ 2) }'
 }

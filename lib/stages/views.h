@@ -23,6 +23,12 @@ MUST_CHECK enum status section_check_numbers(const struct section *section, enum
 MUST_CHECK enum status section_check_indices(const struct section *section, int64_t least, int64_t bound,
                                              const char *what, const char *why, struct error *error);
 
+/* The program that makes a section. */
+const char *section_producer(const struct section_kind *kind);
+
+/* The dimension, from the columns of coordinates; 0 if there are none. */
+int stream_dimension(const struct stream *stream);
+
 /* Node coordinates; or, with node_count and x NULL, only their dimension. */
 MUST_CHECK enum status stream_nodes(const struct stream *stream, int *dim, int64_t *node_count,
                                     const double **x, struct error *error);

@@ -56,8 +56,7 @@ static void judge_statics(struct run *run, const struct statics_report *report)
             : system_has_friction(&run->model->system) ? slides
             : run->model->system.contact_count > 0
                 ? ": a larger tolerance, a finer cloud at the contacts, sides for a rigid surface that ends "
-                  "on "
-                  "the body, or supports against rigid motion may help"
+                  "on the body, or supports against rigid motion may help"
                 : ": it hardly resists some motion, as a slender body that has buckled may turn: a larger "
                   "tolerance, or supports against that motion may help";
         run_fail(run, STATUS_VERDICT,

@@ -1,7 +1,8 @@
 /* The supports of nodes, equation (1) of lib/README.md. */
 #pragma once
 
-#include <stdbool.h>
+#include "base/lists.h"
+
 #include <stddef.h>
 #include <stdint.h>
 
@@ -23,37 +24,26 @@ struct own_support {
     const double *stretch; /* NULL: a ball */
 };
 
-/* The row of supports.sides of a node and a side, or -1. */
-static inline int64_t supports_row(const struct supports *supports, int dim, int64_t node, int32_t side)
+/* For lower_bound: by node, then side. */
+static inline int compare_sides(const void *left, const void *right)
 {
-    int64_t low = 0, high = supports->side_count;
-    while (low < high) {
-        int64_t middle = (low + high) / 2;
-        const double *row = supports->sides + middle * SIDE_COLUMNS(dim);
-        if (row[0] == (double)node && row[1] == (double)side) {
-            return middle;
-        }
-        if (row[0] < (double)node || (row[0] == (double)node && row[1] < (double)side)) {
-            low = middle + 1;
-        } else {
-            high = middle;
-        }
-    }
-    return -1;
+    const double *a = left, *b = right;
+    int differs = a[0] != b[0] ? 0 : 1;
+    return (a[differs] > b[differs]) - (a[differs] < b[differs]);
 }
 
 /* The support of a node, seen from a side; -1: from none. */
 static inline struct own_support supports_seen(const struct supports *supports, int dim, int64_t node,
                                                int32_t side)
 {
-    int64_t row = side >= 0 ? supports_row(supports, dim, node, side) : -1;
-    if (row >= 0) {
-        const double *own = supports->sides + row * SIDE_COLUMNS(dim), *A = own + 3;
-        bool ball = true;
-        for (int k = 0; k < dim * dim; k++) {
-            ball = ball && A[k] == (k % (dim + 1) == 0 ? 1.0 : 0.0);
+    if (side >= 0 && supports->side_count > 0) {
+        size_t size = (size_t)SIDE_COLUMNS(dim) * sizeof *supports->sides;
+        const double key[2] = {(double)node, side};
+        int64_t at = lower_bound(key, supports->sides, supports->side_count, size, compare_sides);
+        const double *own = supports->sides + at * SIDE_COLUMNS(dim);
+        if (at < supports->side_count && compare_sides(own, key) == 0) {
+            return (struct own_support){own[2], own + 3};
         }
-        return (struct own_support){own[2], ball ? NULL : A};
     }
     return (struct own_support){supports->radius[node],
                                 supports->stretch != NULL ? supports->stretch + node * dim * dim : NULL};

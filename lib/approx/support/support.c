@@ -42,15 +42,20 @@ struct found {
 
 static const double widen_step = 1.05;
 
-/* The square of |A (x - x_j)| of a node j, for the worker's point x. */
-static double distance2(const struct search *search, const double *x, int64_t node,
-                        const struct worker *worker)
+/* The support of a node, seen from the worker's point. */
+static struct own_support seen(const struct search *search, int64_t node, const struct worker *worker)
 {
-    int dim = search->visibility->cells.dim;
+    const struct visibility *visibility = search->visibility;
+    return supports_seen(&visibility->supports, visibility->cells.dim, node, worker->side);
+}
+
+/* The square of |A (x - x_j)| of a node j. */
+static double distance2(const struct search *search, const double *x, int64_t node, const double *A)
+{
+    const struct cells *cells = &search->visibility->cells;
     double difference[3];
-    struct own_support own = supports_seen(&search->visibility->supports, dim, node, worker->side);
-    vector_subtract(dim, x, search->visibility->cells.x + node * dim, difference);
-    return vector_square(dim, own.stretch, difference);
+    vector_subtract(cells->dim, x, cells->x + node * cells->dim, difference);
+    return vector_square(cells->dim, A, difference);
 }
 
 /* Keep the `most` nearest of the neighbours index[count], of equally near ones those with lower index. */
@@ -63,7 +68,8 @@ static enum status keep_nearest(const struct search *search, const double *x, in
     }
     RETURN_IF_ERROR(GROW_ARRAY(&worker->order, *count, &worker->order_room, error));
     for (int64_t i = 0; i < *count; i++) {
-        worker->order[i] = (struct placed){distance2(search, x, index[i], worker), index[i]};
+        worker->order[i] =
+            (struct placed){distance2(search, x, index[i], seen(search, index[i], worker).stretch), index[i]};
     }
     qsort(worker->order, (size_t)*count, sizeof *worker->order, compare_placed);
     for (int64_t i = 0; i < most; i++) {
@@ -79,17 +85,15 @@ static enum status keep_nearest(const struct search *search, const double *x, in
 static double spacing_within(const struct search *search, const double *x, const int32_t *index,
                              int64_t count, double widen, const struct worker *worker)
 {
-    const struct supports *supports = &search->visibility->supports;
-    int dim = search->visibility->cells.dim;
     bool limited = count == search->options->most;
     double farthest = 0.0;
     for (int64_t i = 0; i < count; i++) {
+        struct own_support own = seen(search, index[i], worker);
         farthest =
-            fmax(farthest, limited ? sqrt(distance2(search, x, index[i], worker))
-                                   : supports_seen(supports, dim, index[i], worker->side).radius * widen);
+            fmax(farthest, limited ? sqrt(distance2(search, x, index[i], own.stretch)) : own.radius * widen);
     }
-    double unit_ball = dim == 2 ? 3.141592653589793 : 4.1887902047863905;
-    return farthest * pow(unit_ball / (double)count, 1.0 / dim);
+    double unit_ball = search->visibility->cells.dim == 2 ? 3.141592653589793 : 4.1887902047863905;
+    return farthest * pow(unit_ball / (double)count, 1.0 / search->visibility->cells.dim);
 }
 
 /* |A^-1 g|^2 of a gradient; stretch: A, or NULL, 1. */
@@ -113,10 +117,9 @@ static enum status judge(const struct search *search, const double *x, const int
                          struct worker *worker, struct found *found, struct error *error)
 {
     const struct support_options *options = search->options;
-    const struct supports *supports = &search->visibility->supports;
     struct mls_support support = {.x = x,
                                   .nodes = search->visibility->cells.x,
-                                  .supports = *supports,
+                                  .supports = search->visibility->supports,
                                   .widen = found->widen,
                                   .side = worker->side,
                                   .neighbours = index,
@@ -131,19 +134,18 @@ static enum status judge(const struct search *search, const double *x, const int
     RETURN_IF_ERROR(
         mls_evaluate(&options->mls, &support, &worker->work, NULL, worker->gradient, &found->verdict, error));
     for (int64_t i = 0; i < count && found->verdict == MLS_GOOD; i++) {
-        const double *A = supports_seen(supports, dim, index[i], support.side).stretch;
+        const double *A = seen(search, index[i], worker).stretch;
         largest2 = fmax(largest2, square_in_support(dim, A, worker->gradient + i * dim));
     }
     found->steepness = sqrt(largest2) * spacing_within(search, x, index, count, found->widen, worker);
     return STATUS_OK;
 }
 
-/* Whether any of these nodes has supports by sides. */
+/* Whether any of these nodes may have supports by sides. */
 static bool on_interface(const struct visibility *visibility, const int32_t *index, int64_t count)
 {
-    bool any = false;
-    for (int64_t i = 0; i < count && visibility->supports.side_count > 0 && visibility->node_side != NULL;
-         i++) {
+    bool any = false, sided = visibility->supports.side_count > 0 && visibility->node_side != NULL;
+    for (int64_t i = 0; i < count && sided; i++) {
         any = any || visibility->node_side[index[i]] < 0;
     }
     return any;
@@ -155,20 +157,20 @@ static enum status gather(const struct search *search, const double *x, int64_t 
                           const struct found *found, struct error *error)
 {
     const struct visibility *visibility = search->visibility;
-    int dim = visibility->cells.dim;
     worker->list.count = first;
     RETURN_IF_ERROR(point_grid_query(&visibility->grid, x, found->widen, &worker->list, error));
     int32_t *index = worker->list.index + first;
     int64_t near = worker->list.count - first, count = 0;
     bool by_sides = on_interface(visibility, index, near);
+    bool balls = visibility->supports.stretch == NULL && !by_sides; /* as they are found */
     worker->side = by_sides ? worker->visibility.side : -1;
-    for (int64_t i = 0; i < near; i++) {
-        double radius =
-            supports_seen(&visibility->supports, dim, index[i], worker->side).radius * found->widen;
+    for (int64_t i = 0; i < near && !balls; i++) {
+        struct own_support own = seen(search, index[i], worker);
+        double radius = own.radius * found->widen;
         index[count] = index[i];
-        count += (visibility->supports.stretch == NULL && !by_sides) ||
-                 distance2(search, x, index[i], worker) < radius * radius;
+        count += distance2(search, x, index[i], own.stretch) < radius * radius;
     }
+    count = balls ? near : count;
     if (search->looks) {
         RETURN_IF_ERROR(
             visibility_filter(visibility, found->widen, index, &count, &worker->visibility, error));
