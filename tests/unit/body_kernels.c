@@ -102,7 +102,7 @@ static double factorial(int n)
  * one. The mean over a simplex of a product of powers a_k of the N_k is d! prod a_k! / (d + sum a_k)!. */
 TEST_IN_EACH_DIM(pressure_projection)
 {
-    struct material material = {.shear_modulus = 3.0};
+    struct material material = {.shear_modulus = 3.0, .stiffness = 1.0};
     double bubble = factorial(dim) / factorial(2 * dim + 1), stiffness = 0.0, gradient = 0.0, mean = 0.0,
            square = 0.0, pressure[] = {0.3, -1.1, 2.0, 0.7};
     for (int i = 0; i <= dim; i++) {

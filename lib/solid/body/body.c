@@ -63,6 +63,9 @@ static enum status copy_points(const struct body_input *input, struct body *body
     RETURN_IF_ERROR(NEW_ARRAY(&body->J, points + BODY_POINT_PADDING, error));
     RETURN_IF_ERROR(NEW_ARRAY(&body->materials, input->material_count, error));
     memcpy(body->materials, input->materials, (size_t)input->material_count * sizeof *body->materials);
+    for (int64_t m = 0; m < input->material_count; m++) {
+        body->materials[m].stiffness = 1.0;
+    }
     for (int64_t q = 0; q < points; q++) {
         int64_t from = body->order.points[q];
         bool alone = !body->smoothed && input->lists->ptr[from + 1] <= input->lists->ptr[from];
@@ -73,6 +76,7 @@ static enum status copy_points(const struct body_input *input, struct body *body
         body->weight[q] = input->weight[from];
         body->material[q] = input->material[from];
     }
+    RETURN_IF_ERROR(stiffening_build(body, error));
     return prony_build(body, error);
 }
 
@@ -163,6 +167,7 @@ void body_free(struct body *body)
     smoothed_cells_free(&body->cells);
     nodal_volumes_free(&body->volumes);
     prony_free(&body->prony);
+    stiffening_free(&body->stiffening);
     FREE_ALL(body->order.points, body->weight, body->materials, body->material, body->blocks,
              body->order.nodes, body->order.places, body->u, body->F, body->J, body->force, body->derivative);
     *body = (struct body){0};

@@ -10,6 +10,7 @@
 #include "solid/body/body_share.h"
 #include "solid/body/prony.h"
 #include "solid/body/smoothed_cells.h"
+#include "solid/body/stiffening.h"
 #include "solid/material/material.h"
 #include "solid/operators/row_operator.h"
 
@@ -125,7 +126,8 @@ struct body {
     double *F;          /* dim * dim rows of point_count: deformation gradients of the last evaluation */
     double *J;          /* point_count: volume ratios, det F, or of cells that of smoothed_cells.h */
     struct prony prony; /* histories of viscoelastic points */
-    bool averaged;      /* nodal volumetric averaging */
+    struct stiffening stiffening;
+    bool averaged; /* nodal volumetric averaging */
     struct nodal_volumes volumes;
     int threads; /* worth using for so many pairs */
 };
@@ -198,6 +200,10 @@ void body_collect_history(struct body *body);
 /* With collected histories: where mu only stabilises, in s of (10), (13) and (14), it becomes that of each
  * material in the last accepted state, by the work of its stress on its strain, with and without memory. */
 void body_fade(struct body *body);
+
+/* Let the moduli of (10), (13) and (14) follow the state evaluated last (stiffening.h), unless they would
+ * change by less than `most`, by the work. Returns whether they have. */
+bool body_stiffen(struct body *body, double most);
 
 /* First Piola stress of each point at the last evaluation: stress[point_count * 9], caller's order, Pa. */
 void body_stress(struct body *body, double *stress);

@@ -11,7 +11,7 @@ static const double points_part = 2.0;
 /* mu where it stabilises. */
 static double stabilising_shear(const struct material *material)
 {
-    return (1.0 - material->faded) * material->shear_modulus;
+    return material->stiffness * material->shear_modulus;
 }
 
 /* epsilon in 2D and 3D: the compliance of bubbles in regular cells. */
@@ -109,7 +109,7 @@ void nodal_volumes_renew(struct body *body)
 static bool may_have_pressure(const struct material *material)
 {
     struct material relaxed = *material;
-    relaxed.faded = 1.0 - material_long_term(material);
+    relaxed.stiffness = material_long_term(material);
     return nodal_pressure_modulus(&relaxed) > 0.0;
 }
 

@@ -39,7 +39,7 @@ void nodal_volumes_evaluate(struct body *body);
 double nodal_volume_part(double modulus, double shear);
 double nodal_volume_modulus(const struct material *material);
 
-/* After a change of the shares of mu that have faded: S_a and A. */
+/* After a change of the stiffening: S_a and A. */
 void nodal_volumes_renew(struct body *body);
 
 /* Pressure p_q at the last evaluation, Pa; negative in compression. */

@@ -62,12 +62,13 @@ enum status prony_build(struct body *body, struct error *error)
         return STATUS_OK;
     }
     RETURN_IF_ERROR(NEW_ARRAY(&prony->steps, 2 * body->material_count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&prony->faded, 2 * body->material_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&prony->left, 2 * body->material_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&prony->history, points * rows_of(body), error));
     RETURN_IF_ERROR(NEW_ARRAY(&prony->rest, points * prony_components(body) + BODY_POINT_PADDING, error));
     RETURN_IF_ERROR(NEW_ARRAY(&prony->stress, points * PRONY_OFFSETS + BODY_POINT_PADDING, error));
     for (int64_t m = 0; m < body->material_count; m++) {
         prony->steps[body->material_count + m] = step_of(&body->materials[m], 0.0);
+        prony->left[m] = 1.0;
     }
     set_steps(body, 0.0);
     prony->rest_step = NAN;
@@ -76,7 +77,7 @@ enum status prony_build(struct body *body, struct error *error)
 
 void prony_free(struct prony *prony)
 {
-    FREE_ALL(prony->steps, prony->faded, prony->history, prony->rest, prony->stress);
+    FREE_ALL(prony->steps, prony->left, prony->history, prony->rest, prony->stress);
     time_error_free(&prony->time_error);
     *prony = (struct prony){0};
 }
@@ -258,40 +259,31 @@ void body_collect_history(struct body *body)
     }
 }
 
-/* Where mu only stabilises it becomes that of the shares that have faded. */
-static void take_faded(struct body *body)
-{
-    for (int64_t m = 0; m < body->material_count; m++) {
-        body->materials[m].faded = body->prony.faded[m];
-    }
-    smoothed_cells_renew(body);
-    nodal_volumes_renew(body);
-}
-
 void body_fade(struct body *body)
 {
     const struct prony *prony = &body->prony;
     int64_t row = body->point_count, term = prony_components(body) * row;
-    double *whole = prony->faded + body->material_count;
+    double *left = prony->left, *whole = left + body->material_count;
     if (prony->terms == 0) {
         return;
     }
-    memset(prony->faded, 0, (size_t)(2 * body->material_count) * sizeof *prony->faded);
+    memset(left, 0, (size_t)(2 * body->material_count) * sizeof *left);
     for (int64_t i = 0; i < PRONY_RATIO * row; i++) {
         const double *X = prony->history + i;
         int32_t m = body->material[i % row];
         const struct material *material = &body->materials[m];
         double strain = count_of(i / row) * X[(prony->terms + 1) * term];
         whole[m] += strain * *X;
+        left[m] += strain * material_long_term(material) * *X;
         for (int k = 0; k < material->prony_terms; k++) {
-            prony->faded[m] += strain * (material->prony[2 * k] * *X - X[(k + 1) * term]);
+            left[m] += strain * X[(k + 1) * term];
         }
     }
     for (int64_t m = 0; m < body->material_count; m++) {
-        double most = 1.0 - material_long_term(&body->materials[m]);
-        prony->faded[m] = whole[m] > 0.0 ? fmin(fmax(prony->faded[m] / whole[m], 0.0), most) : 0.0;
+        double least = material_long_term(&body->materials[m]);
+        left[m] = whole[m] > 0.0 ? fmin(fmax(left[m] / whole[m], least), 1.0) : 1.0;
     }
-    take_faded(body);
+    stiffening_take(body);
 }
 
 enum status prony_state(struct body *body, const struct state *state, struct error *error)
@@ -303,11 +295,11 @@ enum status prony_state(struct body *body, const struct state *state, struct err
     const struct state_value values[] = {
         {"history", STATE_NUMBERS, prony->history, body->point_count * rows_of(body)},
         {"step", STATE_NUMBERS, &prony->step, 1},
-        {"faded", STATE_NUMBERS, prony->faded, body->material_count},
+        {"left", STATE_NUMBERS, prony->left, body->material_count},
         {"accepted", STATE_FLAGS, &prony->accepted, 1}};
     RETURN_IF_ERROR(state_visit(state, "prony", values, 4, error));
     set_steps(body, prony->step);
-    take_faded(body);
+    stiffening_take(body);
     prony->rest_step = NAN;
     return time_error_state(body, state, error);
 }

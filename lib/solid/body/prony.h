@@ -39,7 +39,7 @@ struct prony {
     double *history;   /* rows of point_count: X, each term h, the strains, and the work of the terms, J (2D:
                           J/m) */
     double *rest;      /* as X: the constants, */
-    double *faded;     /* of each material, the share of mu that has faded, 0 in dynamics; and scratch */
+    double *left;      /* of each material, the share of mu that is left, 1 in dynamics; and scratch */
     double rest_step;  /* in a step of this length; nan: none yet */
     double *stress;    /* PRONY_OFFSETS rows: X but for (10) at the last evaluation */
     double dissipated; /* by the terms, at the last call of body_energy, J (2D: J/m) */

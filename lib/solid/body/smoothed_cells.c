@@ -59,7 +59,7 @@ static enum status set_face_gradients(struct body *body, struct error *error)
 struct variance_moduli smoothed_cells_moduli(const struct material *material)
 {
     struct variance_moduli moduli = {.rest = material_at_rest(material)};
-    moduli.bulk = nodal_volume_part(material_bulk(material), (1.0 - material->faded) * moduli.rest.along);
+    moduli.bulk = nodal_volume_part(material_bulk(material), material->stiffness * moduli.rest.along);
     for (int f = 0; f < moduli.rest.families; f++) {
         moduli.rest.fibre[f] = nodal_volume_part(moduli.rest.fibre[f], moduli.rest.along);
     }
@@ -95,7 +95,7 @@ void smoothed_cells_renew(struct body *body)
         int64_t cell = smoothed_cells_group(body, q);
         struct variance_moduli moduli = smoothed_cells_moduli(&body->materials[body->material[cell]]);
         double volume = VARIANCE_FACTOR(body->dim) * body->weight[q];
-        smoothed->variance_shear[cell] += volume * moduli.rest.shear;
+        smoothed->variance_shear[cell] += volume * stiffening_at(body, cell) * moduli.rest.shear;
         smoothed->variance_bulk[cell] += volume * moduli.bulk;
     }
 }

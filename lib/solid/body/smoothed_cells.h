@@ -69,7 +69,7 @@ MUST_CHECK enum status smoothed_cells_build(const struct body_input *input, stru
                                             struct error *error);
 
 /* The moduli of the variance in each cell: by its own volume, or in a cell that others are merged with by
- * that of the group, and in those none. Again after a change of the shares of mu that have faded. */
+ * that of the group, and in those none. Again after a change of the stiffening. */
 void smoothed_cells_renew(struct body *body);
 
 /* The part of that in smoothed_rows.c: body->cells.averages, and its rows in body->rows. */

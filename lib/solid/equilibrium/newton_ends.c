@@ -41,6 +41,7 @@ void newton_augment(struct newton *n)
         return;
     }
     bool near = n->load.corrections > 0 && n->step.length < most_length * n->report->move;
+    bool stiffened = near && body_stiffen(&n->system->body, most_lack(n));
     bool pressures = near && body_is_limited(&n->system->body);
     n->verdict.gives_way = n->system->contact_count > 0 && contacts_lack(n);
     bool contacts = n->system->contact_count > 0 && (n->load.corrections <= 1 || n->verdict.gives_way);
@@ -52,7 +53,7 @@ void newton_augment(struct newton *n)
         system_augment_contacts(n->system);
     }
     bool stiffer = system_stiffen(n->system);
-    if (stiffer || pressures) {
+    if (stiffer || stiffened || pressures) {
         (void)newton_evaluate(n, n->u, &n->at_u);
     } else {
         newton_touch(n, n->u, &n->at_u);

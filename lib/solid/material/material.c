@@ -50,6 +50,21 @@ struct material_rest material_at_rest(const struct material *material)
     return rest;
 }
 
+double material_rest_energy(const struct material *material, const double e[9])
+{
+    struct material_rest rest = material_at_rest(material);
+    double energy = rest.shear * vector_dot(9, e, e), ea[3];
+    for (int k = 0; k < rest.families; k++) {
+        for (int i = 0; i < 3; i++) {
+            ea[i] = vector_dot(3, e + 3 * i, rest.direction[k]);
+        }
+        double along = vector_dot(3, ea, rest.direction[k]), square = along * along;
+        energy +=
+            2.0 * (rest.along - rest.shear) * (vector_dot(3, ea, ea) - square) + 1.5 * rest.fibre[k] * square;
+    }
+    return energy;
+}
+
 bool material_is_isochoric(const struct material *material)
 {
     return material_laws[material->model]->volume == LAW_VOLUME_LINEAR;

@@ -29,7 +29,7 @@ struct material {
     const double *prony;  /* g and tau, s, of each term of a Prony series, sum g < 1; the caller's; the moduli
                              above are then the instantaneous ones. The body relaxes: W and P here do not */
     int prony_terms;      /* 0: elastic */
-    double faded;         /* the share of mu that the body takes as relaxed where mu only stabilises */
+    double stiffness; /* of a body's material: mu by that at rest, where it only stabilises (stiffening.h) */
 };
 
 /* Moduli from Young's modulus (Pa, > 0) and Poisson's ratio (-1 < nu < .5). */
@@ -53,6 +53,7 @@ struct material_rest {
     double fibre[2], direction[2][3]; /* Pa */
 };
 struct material_rest material_at_rest(const struct material *material);
+double material_rest_energy(const struct material *material, const double e[9]);
 
 /* W_iso(F). NaN when det F <= 0. */
 double material_isochoric_energy(const struct material *material, const double F[9]);

@@ -41,7 +41,7 @@ static void find_tangent(const struct body *body, int64_t q, const struct domain
 {
     static const double at_rest[9] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
     const struct material *material = &body->materials[body->material[q]];
-    double F[9], C[9], mu = material->shear_modulus, pressure = 0.0;
+    double F[9], C[9], mu = stiffening_at(body, q) * material->shear_modulus, pressure = 0.0;
     double rest = body->averaged ? nodal_pressure_modulus(material) : 0.0;
     stress_matrix(body->dim, body->cells.interpolant + q, body->point_count, F);
     double J = determinant(F);
@@ -62,7 +62,8 @@ static void find_tangent(const struct body *body, int64_t q, const struct domain
     tangent->square = 5.0 / 9.0 * shear * I1 / (J * J) + domain->weight * (material->bulk_modulus - rest);
     tangent->turned = (-shear * I1 / (3.0 * J) + domain->weight * pressure) / J;
     tangent->content = domain->weight / domain->count;
-    tangent->share = tangent->content * sqrt(fmin(rest, body->volumes.pressures.most * mu));
+    tangent->share =
+        tangent->content * sqrt(fmin(rest, body->volumes.pressures.most * material->shear_modulus));
 }
 
 /* Add the domain that cell q is in to the row of its function n. */
