@@ -59,14 +59,15 @@ static struct bound bound_at(const struct body *body, int64_t q, bool rest)
         memcpy(F, at_rest, sizeof F);
     }
     cofactor(F, bound.C);
-    bound.shear = body->weight[q] * material->shear_modulus / cbrt(J * J);
+    double stiffening = rest ? 1.0 : stiffening_at(body, q);
+    bound.shear = stiffening * body->weight[q] * material->shear_modulus / cbrt(J * J);
     if (body->averaged) {
         bulk = fmin(bulk, body->volumes.pressures.most * material->shear_modulus);
     }
     bound.along = body->weight[q] * bulk + 5.0 / 9.0 * vector_dot(9, F, F) * bound.shear / (J * J);
     if (body->smoothed) {
-        bound.smoothing =
-            2.0 * body->weight[q] * vertex_variance(body->dim) * variance_modulus(material, F, bound.Z);
+        bound.smoothing = 2.0 * stiffening * body->weight[q] * vertex_variance(body->dim) *
+                          variance_modulus(material, F, bound.Z);
     }
     return bound;
 }

@@ -21,7 +21,7 @@ static enum status transpose_lists(const struct constraint_rows *rows, int64_t n
 static void set_cell(const struct body *body, int64_t q, struct stiffness_cell *cell)
 {
     const struct material *material = &body->materials[body->material[q]];
-    double shear = stiffening_at(body, q) * material->shear_modulus;
+    double shear = material->shear_modulus;
     double bulk = material->bulk_modulus - (body->averaged ? nodal_pressure_modulus(material) : 0.0);
     cell->first = (int32_t)smoothed_cells_group(body, q);
     cell->end = (int32_t)smoothed_cells_group_end(body, q);
