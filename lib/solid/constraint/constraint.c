@@ -8,8 +8,12 @@
 #include <string.h>
 
 /* Rows with a smaller relative pivot count as linearly dependent and are dropped: the part of such a row that
- * is independent of the others is at most 1e-5 of it. Their forces are shared with this shift. */
-static const double least_pivot = 1e-10, share_shift = 1e-8;
+ * is independent of the others is at most 1e-5 of it. */
+static const double least_pivot = 1e-10;
+/* Forces are shared with this shift, in so many passes: what rows have of their own counts from 1e-3 of a row
+ * on, and the sums of forces stay to some 1e-6. */
+static const double share_shift = 3e-3;
+enum { SHARE_PASSES = 3 };
 
 void constraint_rows_init(struct constraint_rows *rows, int dim)
 {
@@ -220,6 +224,7 @@ void constraint_free(struct constraint *constraint)
     FREE_ALL(constraint->multiplier);
     constraint_nodes_free(&constraint->nodes);
     envelope_free(&constraint->factor);
+    envelope_free(&constraint->sharing);
     *constraint = (struct constraint){0};
 }
 
@@ -254,19 +259,58 @@ void constraint_project(struct constraint *constraint, const double *factor, dou
     constraint_spread(constraint, multiplier, u);
 }
 
-enum status constraint_share_out(const struct constraint *constraint, double *force, struct error *error)
+/* The rows that share: those of blocks in which sections meet, or rows were dropped. False: there are none.
+ */
+static bool find_shared(const struct constraint *constraint, bool *shared)
+{
+    const struct envelope *factor = &constraint->factor;
+    const int32_t *section = constraint->rows->section;
+    bool any = false;
+    for (int64_t b = 0; b < factor->block_count; b++) {
+        int64_t first = factor->block[b], last = factor->block[b + 1];
+        bool shares = false;
+        for (int64_t i = first; i < last; i++) {
+            shares = shares || section[factor->order[i]] != section[factor->order[first]] ||
+                     envelope_is_dropped(factor, i);
+        }
+        for (int64_t i = first; i < last; i++) {
+            shared[factor->order[i]] = shares;
+        }
+        any = any || shares;
+    }
+    return any;
+}
+
+enum status constraint_share_out(struct constraint *constraint, double *force, struct error *error)
 {
     const struct constraint_rows *rows = constraint->rows;
-    FREED_BY(envelope_free) struct envelope factor = {0};
-    if (constraint->factor.dropped == 0) {
+    int64_t count = rows->count, size = constraint->node_count * rows->dim;
+    NEW_SCRATCH(bool, shared, count, error);
+    if (!find_shared(constraint, shared)) {
         return STATUS_OK;
     }
-    NEW_SCRATCH(double, u, constraint->node_count * rows->dim, error);
-    RETURN_IF_ERROR(constraint_factorise(rows, constraint->node_count, constraint->mass, 0.0, share_shift,
-                                         &factor, error));
-    constraint_spread(constraint, force, u);
-    constraint_values(constraint, u, force);
-    envelope_solve(&factor, force);
+    NEW_SCRATCH(double, u, size, error);
+    NEW_SCRATCH(double, sum, count, error);
+    NEW_SCRATCH(double, left, count, error);
+    if (constraint->sharing.n == 0) {
+        RETURN_IF_ERROR(constraint_factorise(rows, constraint->node_count, constraint->mass, 0.0, share_shift,
+                                             &constraint->sharing, error));
+    }
+    for (int pass = 0; pass < SHARE_PASSES; pass++) {
+        for (int64_t r = 0; r < count; r++) {
+            left[r] = force[r] - sum[r];
+        }
+        memset(u, 0, (size_t)size * sizeof *u);
+        constraint_spread(constraint, left, u);
+        constraint_values(constraint, u, left);
+        envelope_solve(&constraint->sharing, left);
+        for (int64_t r = 0; r < count; r++) {
+            sum[r] += left[r];
+        }
+    }
+    for (int64_t r = 0; r < count; r++) {
+        force[r] = shared[r] ? sum[r] : force[r];
+    }
     return STATUS_OK;
 }
 
