@@ -112,6 +112,9 @@ closed_cube() {
     pressed_block | sed "$svk; s/-0.005/-0.02/" > clamped.scene
     mtled clamped.scene block.mts 2> said > u.dat
     grep -q '^mtled: clamped.scene: at the whole load, the material law is not strongly elliptic in [0-9.]* % of the body, as at (' said
+    { head3; printf '[displacement a]\nfacets = zmin\ncomponents = 0, 0, 0\n[displacement b]\nfacets = zmax\ncomponents = free, free, -0.04\n'; } |
+        sed 's/^E = .*/model = ogden\nmu = 1500, -500\nalpha = 2, -4/' > slackens.scene
+    refused 1 ' of the load, the material law is not strongly elliptic in ' mtled slackens.scene cube.mts
 }
 
 @test "sections that ask for nearly the same at a node: reported with both values; in round-off of each other: not" {
@@ -356,14 +359,15 @@ END
     rows moments u.dat | awk '{ x = $1 / 5e-4 - 1; z = $3 / -5e-4 - 1; print; exit !(x^2 < 1e-4 && z^2 < 1e-4 && $2^2 < 1e-12) }'
 }
 
-# Quadratic mixed elements of dolfinx: 193.7 to 190.2 N on the lattices of 48 to 245 nodes, refined once.
+# Quadratic mixed elements of dolfinx on the lattices refined once: 193.7, 191.7, 190.2 N; on the lattices themselves 202, 197, 194.
 @test "the forces of sections that meet at edges do not alternate: a block in a corner, pressed from above" {
     printf '[scene]\ndim = 3\nanalysis = quasi-static\n[material all]\nregion = body\nE = 3000\nnu = 0.49\n' > corner.scene
     printf '[displacement %s]\nfacets = %s\ncomponents = %s\n' a zmin '0, 0, 0' b xmin '0, free, free' c ymin 'free, 0, free' >> corner.scene
     printf '[pressure p]\nfacets = zmax\nvalue = 500\n[output]\nreactions = yes\n' >> corner.scene
-    for n in 4,4,3 5,5,4 6,6,4 7,7,5; do
+    while read -r n want most; do
         cloud -d 3 -k regular -n $n --box 0,1.2,0,1.2,0,0.8 2> note | shapefn > table.mts 2>> note
-        mtled corner.scene table.mts | mts print reactions |
-            awk '{ sum += $3; got[NR] = NR == 3 ? $2 : $1 } END { print got[2], got[3], sum; exit !(got[2] > 175 && got[2] < 215 && got[3] > 175 && got[3] < 215 && sum > 830 && sum < 870) }'
-    done
+        mtled corner.scene table.mts | mts print reactions | awk -v want="$want" -v most="$most" '
+            { sum += $3; off[NR] = (NR == 3 ? $2 : $1) / want - 1 }
+            END { print off[2], off[3], sum; exit !(NR == 3 && off[2]^2 < most^2 && off[3]^2 < most^2 && sum > 830 && sum < 870) }'
+    done <<< $'4,4,3 193.7 0.15\n5,5,4 191.7 0.1\n7,7,5 190.2 0.05'
 }

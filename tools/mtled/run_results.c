@@ -250,6 +250,7 @@ void run_put_frame(void *context, int64_t number, double time, const double *u)
     const double duration = run->scene->duration;
     const struct instant now = {number, duration > 0.0 ? time * duration : time};
     run_put_field(run, &now, u);
+    run->last_good = -1.0; /* it has been given */
     run_folds_check(run, u, time, true);
     if (run->scene->analysis == SCENE_QUASI_STATIC) {
         run_stability_check(run, time, false);

@@ -48,6 +48,9 @@ static void judge_statics(struct run *run, const struct statics_report *report)
         snprintf(load, sizeof load, in_time ? " (at t = %.3g s)" : " (at %.3g of the load)",
                  in_time ? report->load * scene->duration : report->load);
     }
+    if (report->outcome != STATICS_STOPPED) {
+        run_stability_check(run, report->load, false); /* as where the law itself has given way */
+    }
     snprintf(run->at, sizeof run->at, "step %jd%s: ", report->steps, load);
     const char *place = POINT_TEXT(scene->dim, run->model->system.X + report->worst_node * scene->dim);
     if (report->outcome == STATICS_STALLED) {

@@ -2,6 +2,7 @@
 
 #include "approx/field/field.h"
 #include "base/memory.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <string.h>
@@ -103,7 +104,8 @@ static enum status note_sliding(const struct prescription *p, const struct bound
 /* Add the rows of the first `count` averages, and record the values that the condition prescribes at their
  * nodes. With sides, mark the components that earlier conditions hold in each group. */
 static enum status add_all(const struct prescription *p, const struct boundary_averages *averages,
-                           const struct boundary_sides *sides, int64_t count, struct error *error)
+                           const struct boundary_sides *sides, int64_t count, int64_t *first_row,
+                           struct error *error)
 {
     int dim = p->input->cells.dim;
     int64_t first = p->system->rows.count;
@@ -112,6 +114,7 @@ static enum status add_all(const struct prescription *p, const struct boundary_a
     for (int64_t a = 0; a < count; a++) {
         struct demand demand;
         int64_t before = p->system->rows.count;
+        first_row[a] = before;
         RETURN_IF_ERROR(
             add_rest(p, averages, a, sides != NULL ? p->shared + sides->group[a] * dim : NULL, error));
         bool curved = slides && !sides->flat[sides->node_average_count + sides->group[a]];
@@ -126,6 +129,7 @@ static enum status add_all(const struct prescription *p, const struct boundary_a
             memcpy(added->direction, demand.direction + k * dim, (size_t)dim * sizeof *added->direction);
         }
     }
+    first_row[count] = p->system->rows.count;
     held_note(p->held, &p->system->rows, first, p->system->rows.count);
     return STATUS_OK;
 }
@@ -197,6 +201,27 @@ static enum status part_tractions(const struct prescription *p, const struct bou
     return STATUS_OK;
 }
 
+/* Mark the rows of the averages that lie on a flat side whose mean is prescribed, too. Those of average a
+ * begin at first[a]. */
+static void loosen(const struct constraint_rows *rows, const struct boundary_averages *averages,
+                   const struct boundary_sides *sides, const int64_t *first)
+{
+    int64_t dim = rows->dim, count = sides->node_average_count;
+    for (int64_t m = count; m < averages->count; m++) {
+        for (int64_t a = 0; a < count && first[m] < first[m + 1]; a++) {
+            double turn = vector_dot(rows->dim, averages->normal + a * dim, averages->normal + m * dim);
+            bool within = sides->group[a] == sides->group[m] && turn > 1.0 - 0.5e-6; /* as flat sides */
+            for (int64_t r = first[a]; within && r < first[a + 1]; r++) {
+                for (int64_t k = first[m]; k < first[m + 1]; k++) {
+                    double cosine =
+                        vector_dot(rows->dim, rows->direction + r * dim, rows->direction + k * dim);
+                    rows->loose[r] = rows->loose[r] || fabs(cosine) > SAME_DIRECTION;
+                }
+            }
+        }
+    }
+}
+
 /* Add constraint rows on boundary averages, then on means over flat sides. */
 static enum status add_averages(struct prescription *p, struct error *error)
 {
@@ -206,12 +231,22 @@ static enum status add_averages(struct prescription *p, struct error *error)
     RETURN_IF_ERROR(
         boundary_sides_build(&p->input->face_table, &p->condition->facets, normal, &averages, &sides, error));
     RETURN_IF_ERROR(NEW_ARRAY(&p->shared, sides.group_count * p->input->cells.dim, error));
-    RETURN_IF_ERROR(add_all(p, &averages, &sides, sides.node_average_count, error));
+    const struct constraint_rows *rows = &p->system->rows;
+    NEW_SCRATCH(int64_t, first, averages.count + 1, error);
+    RETURN_IF_ERROR(add_all(p, &averages, &sides, sides.node_average_count, first, error));
+    bool meets = false;
+    for (int64_t i = 0; i < sides.group_count * rows->dim; i++) {
+        meets = meets || p->shared[i];
+    }
     RETURN_IF_ERROR(normal ? note_sliding(p, &sides, error) : part_tractions(p, &averages, &sides, error));
     for (int64_t a = sides.node_average_count; a < averages.count; a++) {
         if (sides.flat[a]) {
             RETURN_IF_ERROR(add_side(p, &averages, &sides, a, error));
         }
+        first[a + 1] = rows->count;
+    }
+    if (meets) {
+        loosen(rows, &averages, &sides, first);
     }
     return STATUS_OK;
 }
@@ -230,7 +265,8 @@ static enum status add_nodes(struct prescription *p, struct error *error)
                                             condition->node_count, &input->node_lists, input->node_phi,
                                             &averages, error));
     }
-    return add_all(p, &averages, NULL, averages.count, error);
+    NEW_SCRATCH(int64_t, first, averages.count + 1, error);
+    return add_all(p, &averages, NULL, averages.count, first, error);
 }
 
 static enum status add_condition(struct prescription *p, struct error *note, struct error *error)

@@ -35,6 +35,7 @@ struct constraint_rows {
     int32_t *curve;   /* count: which load curve scales the target */
     int32_t *section; /* count: the caller's label, for messages and reactions */
     int32_t *node;    /* count: the node that messages name */
+    bool *loose; /* count: false; the caller's: another row is the mean over the side that this one is on */
 };
 
 void constraint_rows_init(struct constraint_rows *rows, int dim);
@@ -85,8 +86,8 @@ struct constraint {
     const struct constraint_rows *rows; /* the caller's; must outlive the constraint */
     const double *mass;                 /* node_count; the caller's; NULL: 1 */
     struct constraint_nodes nodes;      /* transpose of the rows, over the mass */
-    struct envelope factor, sharing;    /* that of constraint_share_out, once it was called */
-    double *multiplier;                 /* count: of the last projection, N s2 in the step's scaling */
+    struct envelope factor;
+    double *multiplier; /* count: of the last projection, N s2 in the step's scaling */
 };
 
 /* Factor G M^-1 G^T, M diagonal. Linearly dependent rows are dropped (factor.dropped). A dropped row holds if
@@ -106,11 +107,12 @@ MUST_CHECK enum status constraint_factorise(const struct constraint_rows *rows, 
  */
 void constraint_project(struct constraint *constraint, const double *factor, double *u);
 
-/* force[count]: the forces of rows that several sections, or linearly dependent rows, hold together are
- * replaced by those of the least norm sum_r (G M^-1 G^T)_rr force_r^2 that have nearly the same nodal forces.
- * Where sections meet, their rows are nearly dependent: large forces of the one against the other, which
- * alternate from node to node, would move nothing. */
-MUST_CHECK enum status constraint_share_out(struct constraint *constraint, double *force,
+/* force[count]: the forces of the rows, zero for dropped rows, are replaced by those with the same nodal
+ * forces and the least norm sum_r (G M^-1 G^T)_rr force_r^2. So linearly dependent rows share their force.
+ * Where loose rows of one direction meet other sections, they are nearly dependent: large forces against each
+ * other, which alternate from node to node, would move nothing. There the nodal forces stay nearly, their sum
+ * exactly, and the norm of loose rows is small. */
+MUST_CHECK enum status constraint_share_out(const struct constraint *constraint, double *force,
                                             struct error *error);
 
 /* Largest |target * factor - G u|, m; *row, unless NULL, receives its row. */
