@@ -199,12 +199,12 @@ static enum status assemble(const struct constraint_rows *rows, int64_t node_cou
 }
 
 enum status constraint_factorise(const struct constraint_rows *rows, int64_t node_count, const double *mass,
-                                 double least, double shift, struct envelope *factor, struct error *error)
+                                 double least, struct envelope *factor, struct error *error)
 {
     SCRATCH int64_t *ptr = NULL, *column = NULL;
     SCRATCH double *value = NULL;
     RETURN_IF_ERROR(assemble(rows, node_count, mass, &ptr, &column, &value, error));
-    return envelope_factorise(rows->count, ptr, column, value, least, shift, factor, error);
+    return envelope_factorise(rows->count, ptr, column, value, least, 0.0, factor, error);
 }
 
 enum status constraint_build(const struct constraint_rows *rows, int64_t node_count, const double *mass,
@@ -215,8 +215,7 @@ enum status constraint_build(const struct constraint_rows *rows, int64_t node_co
         return STATUS_OK;
     }
     RETURN_IF_ERROR(NEW_ARRAY(&constraint->multiplier, rows->count, error));
-    RETURN_IF_ERROR(
-        constraint_factorise(rows, node_count, mass, least_pivot, 0.0, &constraint->factor, error));
+    RETURN_IF_ERROR(constraint_factorise(rows, node_count, mass, least_pivot, &constraint->factor, error));
     return constraint_nodes_build(rows, node_count, mass, NULL, &constraint->nodes, error);
 }
 

@@ -98,10 +98,10 @@ MUST_CHECK enum status constraint_build(const struct constraint_rows *rows, int6
                                         struct error *error);
 void constraint_free(struct constraint *constraint);
 
-/* Only factor G M^-1 G^T, M diagonal; `least` and `shift` as of envelope_factorise. */
+/* Only factor G M^-1 G^T, M diagonal; `least` as of envelope_factorise. */
 MUST_CHECK enum status constraint_factorise(const struct constraint_rows *rows, int64_t node_count,
-                                            const double *mass, double least, double shift,
-                                            struct envelope *factor, struct error *error);
+                                            const double *mass, double least, struct envelope *factor,
+                                            struct error *error);
 
 /* u += M^-1 G^T multiplier such that G u = target * factor[curve]. With factor == NULL the targets are zero.
  */

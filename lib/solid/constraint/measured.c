@@ -108,7 +108,7 @@ enum status measured_dependent(const struct constraint_rows *rows, int64_t node_
                                struct error *error)
 {
     FREED_BY(envelope_free) struct envelope factor = {0};
-    RETURN_IF_ERROR(constraint_factorise(rows, node_count, NULL, least_independent, 0.0, &factor, error));
+    RETURN_IF_ERROR(constraint_factorise(rows, node_count, NULL, least_independent, &factor, error));
     for (int64_t r = 0; r < rows->count; r++) {
         dependent[factor.order[r]] = envelope_is_dropped(&factor, r);
     }
