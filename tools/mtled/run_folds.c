@@ -328,7 +328,9 @@ void run_stability_check(struct run *run, double load, bool final)
     }
     const char *place = POINT_TEXT(run->scene->dim, run->model->assembly.x + found.point * run->scene->dim);
     if (found.share > most_inelliptic) {
-        run->last_good = final ? -1.0 : run->last_good; /* all frames have been given */
+        if (final) {
+            run->last_good = -1.0; /* all frames have been given */
+        }
         run_fail(run, STATUS_VERDICT, text, when_text(run, load, when), 100.0 * found.share, place);
     }
     run_note(run, text, when_text(run, load, when), 100.0 * found.share, place);

@@ -299,7 +299,6 @@ enum status prony_state(struct body *body, const struct state *state, struct err
         {"accepted", STATE_FLAGS, &prony->accepted, 1}};
     RETURN_IF_ERROR(state_visit(state, "prony", values, 4, error));
     set_steps(body, prony->step);
-    stiffening_take(body);
     prony->rest_step = NAN;
     return time_error_state(body, state, error);
 }

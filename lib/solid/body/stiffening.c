@@ -59,13 +59,13 @@ static double work_of(const double F[9], const double P[9])
     return -0.5 * vector_dot(9, C, P) / determinant(F);
 }
 
-/* The deviator of (F^T F - I) / 2 */
+/* The deviator of the Green-Lagrange strain. */
 static void find_deviator(const double F[9], double e[9])
 {
-    right_cauchy_green(F, e);
+    green_lagrange(F, e);
     double third = (e[0] + e[4] + e[8]) / 3.0;
-    for (int k = 0; k < 9; k++) {
-        e[k] = 0.5 * (e[k] - (k % 4 == 0 ? third : 0.0));
+    for (int k = 0; k < 3; k++) {
+        e[4 * k] -= third;
     }
 }
 
@@ -157,13 +157,14 @@ bool body_stiffen(struct body *body, double most)
 enum status stiffening_state(struct body *body, const struct state *state, struct error *error)
 {
     struct stiffening *stiffening = &body->stiffening;
-    if (stiffening->of_point == NULL) {
-        return STATUS_OK;
-    }
     const struct state_value values[] = {
         {"of_point", STATE_NUMBERS, stiffening->of_point, body->point_count},
         {"of_material", STATE_NUMBERS, stiffening->of_material, body->material_count}};
-    RETURN_IF_ERROR(state_visit(state, "stiffening", values, 2, error));
-    stiffening_take(body);
+    if (stiffening->of_point != NULL) {
+        RETURN_IF_ERROR(state_visit(state, "stiffening", values, 2, error));
+    }
+    if (stiffening->of_point != NULL || body->prony.terms > 0) {
+        stiffening_take(body);
+    }
     return STATUS_OK;
 }

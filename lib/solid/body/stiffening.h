@@ -24,7 +24,7 @@ void stiffening_free(struct stiffening *stiffening);
 /* of_point of a point. */
 double stiffening_at(const struct body *body, int64_t q);
 
-/* Visit them, see base/state.h. */
+/* Visit them, see base/state.h; after what a Prony series has left. */
 MUST_CHECK enum status stiffening_state(struct body *body, const struct state *state, struct error *error);
 
 /* Let the moduli of (10), (13) and (14) follow: by of_point, of_material, and what a Prony series has left.

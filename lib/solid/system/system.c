@@ -57,8 +57,8 @@ enum status system_state(struct solid_system *system, const struct state *state,
     RETURN_IF_ERROR(state_visit(state, "conditions", &stiffness, 1, error));
     RETURN_IF_ERROR(
         state_visit(state, "equilibrium", stability, sizeof stability / sizeof *stability, error));
-    RETURN_IF_ERROR(stiffening_state(&system->body, state, error));
     RETURN_IF_ERROR(prony_state(&system->body, state, error));
+    RETURN_IF_ERROR(stiffening_state(&system->body, state, error));
     for (int64_t c = 0; c < system->contact_count; c++) {
         char prefix[32];
         snprintf(prefix, sizeof prefix, "contact.%lld", (long long)c);
