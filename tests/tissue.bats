@@ -281,6 +281,7 @@ END
     grep -q 'Name="points.fibre" NumberOfComponents="3"' table.vtu
     gmsh -3 -v 1 -setnumber h 2 "$top/examples/hard/ventricle.geo" -o heart.msh
     nodes -u mm heart.msh 2> note | fibres --from inside,90 --to 'all without inside without base,-90' --axis 0,0,1 2>> note | shapefn > heart.mts 2>> note
+    grep -q 'fibres turn by more than 30 degrees across [0-9]* % of the inner faces' note
     # Land et al. (2015): ellipsoids of radii 7 + 3 t and 17 + 3 t mm, the angle 90 - 180 t; e and f along and around them.
     paste <(mts print points.x heart.mts) <(mts print points.fibre heart.mts) | awk '
         { x = 1e3 * $1; y = 1e3 * $2; z = 1e3 * $3; r = sqrt(x * x + y * y); low = -1; high = 2

@@ -93,6 +93,28 @@ static void read_axis(const struct tool *tool, double axis[3])
     }
 }
 
+/* Note if fibres turn too far for one direction in a cell: by 30 degrees and more across most faces. */
+static void note_turns(const struct tool *tool, const struct stream *stream, const double *fibre)
+{
+    struct faces faces = {0};
+    int64_t far = 0;
+    if (stream_find(stream, "faces") == NULL || !points_are_smoothed(stream_find(stream, "points.x"))) {
+        return;
+    }
+    TOOL_TRY(tool, stream_faces(stream, &faces, &error));
+    for (int64_t f = faces.boundary_count; f < faces.count; f++) {
+        double cosine = vector_dot(3, fibre + 3 * faces.cell[2 * f], fibre + 3 * faces.cell[2 * f + 1]);
+        far += cosine * cosine < 0.75; /* that of 30 degrees */
+    }
+    int64_t inside = faces.count - faces.boundary_count;
+    if (2 * far > inside) {
+        tool_note(tool,
+                  "fibres turn by more than 30 degrees across %.0f %% of the inner faces, and a cell has one "
+                  "direction: displacements may be 10 %% off, give more cells across the wall",
+                  100.0 * (double)far / (double)inside);
+    }
+}
+
 int main(int argc, char *argv[])
 {
     struct tool tool;
@@ -116,6 +138,7 @@ int main(int argc, char *argv[])
     struct wall wall = {
         .from = &from.surface, .to = &to.surface, .axis = axis, .angles = {from.angle, to.angle}};
     TOOL_TRY(&tool, wall_fibres(&wall, points->rows, points->data, fibre, &error));
+    note_turns(&tool, &stream, fibre);
     rigid_free(&from.surface);
     rigid_free(&to.surface);
     tool_put(&tool, &stream, "points.fibre", TYPE_F8, points->rows, 3, "unit=1 cols=x,y,z", fibre);
