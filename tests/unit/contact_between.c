@@ -142,7 +142,7 @@ TEST(friction)
         double *u = zeros(size, sizeof *u), *force = zeros(size, sizeof *force), h = 1e-9, most = 0.0,
                sum[3] = {0.0};
         double *aside = zeros(size, sizeof *aside);
-        GOOD(friction_build(contact, 0.4, false, &error));
+        GOOD(friction_build(contact, 0.4, 1.0, false, &error));
         overlap(&pair, 1e-3, 1e-4, &random, u);
         contact_measure(contact, u, true);
         contact_accept(contact);

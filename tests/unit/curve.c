@@ -54,4 +54,21 @@ TEST(tabulated)
     NEAR_TO(curve_value(&curve, .75), 3.25, 1e-14);
 }
 
+/* Points where the factor turns, or begins or ends to be constant. */
+TEST(turns)
+{
+    static const double points[] = {0, 0, 1, 2, 2, 3, 4, 3, 5, 3, 6, -1, 7, 0, 8, 1};
+    static const double at[] = {2, 5, 6};
+    FREED_BY(curve_free) struct load_curve curve = {0};
+    GOOD(curve_tabulate(&curve, 8, points, 8, false, &error));
+    double s = -1;
+    for (int i = 0; i < 3; i++) {
+        s = curve_next_turn(&curve, s);
+        NEAR_TO(s, at[i] / 8, 1e-15);
+    }
+    assert_true(isinf(curve_next_turn(&curve, s)));
+    struct load_curve smooth = curve_of_kind(CURVE_SMOOTH);
+    assert_true(isinf(curve_next_turn(&smooth, 0)));
+}
+
 RUN_TESTS(NULL, NULL)

@@ -52,11 +52,12 @@ static void judge_statics(struct run *run, const struct statics_report *report)
         run_stability_check(run, report->load, false); /* as where the law itself has given way */
     }
     snprintf(run->at, sizeof run->at, "step %jd%s: ", report->steps, load);
+    bool may_slide = run->model->system.floats && system_has_friction(&run->model->system);
     const char *place = POINT_TEXT(scene->dim, run->model->system.X + report->worst_node * scene->dim);
     if (report->outcome == STATICS_STALLED) {
         const char *remedy =
-            run->folds.seen                            ? "" /* it is named with the fold */
-            : system_has_friction(&run->model->system) ? slides
+            run->folds.seen ? "" /* it is named with the fold */
+            : may_slide     ? slides
             : run->model->system.contact_count > 0
                 ? ": a larger tolerance, a finer cloud at the contacts, sides for a rigid surface that ends "
                   "on the body, or supports against rigid motion may help"
@@ -78,7 +79,7 @@ static void judge_statics(struct run *run, const struct statics_report *report)
     }
     if (report->outcome == STATICS_AWAY) {
         run_fail(run, STATUS_VERDICT, "the body moves on, by %.3g m so far, and does not come to rest: %s",
-                 report->move, system_has_friction(&run->model->system) ? slides + 2 : beyond_limit);
+                 report->move, may_slide ? slides + 2 : beyond_limit);
     }
     run->at[0] = '\0';
     run_fail(run, STATUS_VERDICT,
@@ -220,17 +221,18 @@ static void run_quasi_static(struct run *run)
 {
     const struct scene_solver *solver = &run->scene->solver;
     struct body *body = &run->model->system.body;
-    bool in_time = run->scene->duration > 0.0, in_steps = solver->time_steps > 0, chosen = chooses_steps(run);
+    bool in_time = run->scene->duration > 0.0, chosen = chooses_steps(run);
     struct statics_options options = {.tolerance = solver->tolerance,
                                       .time_step_margin = solver->time_step_margin,
                                       .ramp_steps = solver->ramp_steps,
                                       .most_steps = solver->max_steps,
-                                      .frames = chosen     ? 1
-                                                : in_steps ? count_steps(run->scene)
-                                                           : run->scene->output.frames,
+                                      .frames = chosen    ? 1
+                                                : in_time ? count_steps(run->scene)
+                                                          : run->scene->output.frames,
+                                      .steps = in_time ? 0 : count_steps(run->scene),
                                       .in_time = in_time,
                                       .hold = chosen ? begin_step : NULL,
-                                      .frame = in_steps || in_time ? end_step : run_put_frame,
+                                      .frame = in_time ? end_step : run_put_frame,
                                       .progress = run_progress,
                                       .context = run,
                                       .restored =

@@ -11,8 +11,9 @@
 /* Penalty modulus by the shear modulus: the P-wave modulus at Poisson's ratio .49. */
 static const double penalty_factor = 50.0;
 
-/* Factor of this modulus at quadrature points, whose multipliers take what is left; and between facets of the
- * body without friction, where the pressures on both sides follow each other slowly if it is large. */
+/* Factor of this modulus at quadrature points, whose multipliers take what is left, and of the springs of
+ * friction, which have none; and between facets of the body, where the pressures on both sides follow each
+ * other slowly if it is large. */
 static const double points_share = 4.0, between_share = 0.5;
 
 /* A curve jumps if it changes by more than half of its largest factor in this share of the scene's time. */
@@ -107,8 +108,9 @@ static enum status add_between(const struct assembly *input, const struct contac
 /* The stiffness of a layer of cells: by the P-wave modulus of the softer side, but at most penalty_factor
  * times the shear modulus of the stiffer one. */
 static enum status set_stiffness(const struct assembly *input, const struct contact_condition *condition,
-                                 double share, struct contact *contact, struct error *error)
+                                 struct contact *contact, struct error *error)
 {
+    double share = contact->averages == NULL ? 1.0 : contact->between != NULL ? between_share : points_share;
     double modulus, wave, least = INFINITY, largest = 0.0;
     const struct facet_set *sides[] = {&condition->facets, &condition->opposite};
     for (int i = 0; i < (condition->opposite.count > 0 ? 2 : 1); i++) {
@@ -142,12 +144,13 @@ static enum status add_contact(const struct assembly *input, int32_t number, str
                                 "%s", condition->where));
     }
     if (condition->stiffness == 0.0) {
-        double share = between && condition->friction == 0.0 ? between_share : points_share;
-        RETURN_IF_ERROR(set_stiffness(input, condition, averages->count > 0 ? share : 1.0, contact, error));
+        RETURN_IF_ERROR(set_stiffness(input, condition, contact, error));
     }
     contact->section = number;
     if (condition->friction > 0.0) {
-        RETURN_IF_ERROR(friction_build(contact, condition->friction, input->in_time, error));
+        bool softer = condition->stiffness == 0.0 && contact->averages != NULL && between;
+        RETURN_IF_ERROR(friction_build(contact, condition->friction,
+                                       softer ? points_share / between_share : 1.0, input->in_time, error));
     }
     struct rigid_motion *motion = &contact->motion;
     *motion = condition->motion;

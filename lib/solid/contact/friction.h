@@ -35,9 +35,9 @@ struct contact_friction {
     double *slip;         /* count * dim: from the anchor across the normal, m, in the surface's frame */
 };
 
-/* Give a contact, whose stiffness is set, friction. */
-MUST_CHECK enum status friction_build(struct contact *contact, double coefficient, bool follows,
-                                      struct error *error);
+/* Give a contact, whose stiffness is set, friction; stiffer: the stiffness of the springs, by that. */
+MUST_CHECK enum status friction_build(struct contact *contact, double coefficient, double stiffer,
+                                      bool follows, struct error *error);
 
 /* The functions below do nothing for a contact without friction. */
 void friction_free(struct contact *contact);

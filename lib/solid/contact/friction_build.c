@@ -7,7 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum status friction_build(struct contact *contact, double coefficient, bool follows, struct error *error)
+enum status friction_build(struct contact *contact, double coefficient, double stiffer, bool follows,
+                           struct error *error)
 {
     int64_t count = contact->count, places = contact->between != NULL ? count : 0, dim = contact->dim;
     RETURN_IF_ERROR(NEW_ARRAY(&contact->friction, 1, error));
@@ -27,7 +28,7 @@ enum status friction_build(struct contact *contact, double coefficient, bool fol
     RETURN_IF_ERROR(NEW_ARRAY(&friction->place_weight, places * dim, error));
     RETURN_IF_ERROR(NEW_ARRAY(&friction->ahead, places * dim, error));
     for (int64_t p = 0; p < count; p++) {
-        friction->stiffness[p] = contact->stiffness[p];
+        friction->stiffness[p] = stiffer * contact->stiffness[p];
     }
     for (int64_t i = 0; i < count * dim && contact->between == NULL; i++) {
         friction->anchor[i] = contact->rest[i];

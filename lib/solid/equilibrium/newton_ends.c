@@ -8,6 +8,9 @@
 /* With contacts, an error that stays below this is accepted: points that alternate between two facets keep it
  * from falling. */
 static const double most_hovering = 1e-3;
+/* Equilibria on the way, at which points that slip take their anchors along: their error by the tolerance,
+ * and what hovers there by the largest motion that the run prescribes. */
+static const double on_the_way = 100.0, hovering_on_the_way = 5e-3;
 /* A body that has moved by this share of its largest displacement has not come to its end: a slender one that
  * has buckled may turn for long, by small steps; but one that has gone ten times as far goes round in
  * circles. Nor has one whose load has grown by this share. */
@@ -114,15 +117,17 @@ static int64_t note_progress(struct newton *n)
 static bool is_found(struct newton *n, bool vain, struct error *error)
 {
     struct statics_report *report = n->report;
-    double most = n->options->tolerance;
-    if ((report->error <= most || (vain && isinf(n->verdict.lowest))) && !n->verdict.judged) {
+    bool reported = n->load.now == n->load.hold;
+    double most = (reported ? 1.0 : on_the_way) * n->options->tolerance;
+    if (reported && (report->error <= most || (vain && isinf(n->verdict.lowest))) && !n->verdict.judged) {
         n->failure = newton_judge_stability(n, error);
         n->verdict.judged = true;
         newton_estimate(n);
     }
     if (vain) {
         bool hovers = system_has_touched(n->system) && !newton_held_by_friction(n);
-        most = fmax(most, hovers ? most_hovering : admitted(n));
+        double way = reported ? 0.0 : hovering_on_the_way * system_longest_way(n->system) / report->move;
+        most = fmax(most, hovers ? fmax(most_hovering, way) : admitted(n));
     }
     bool rounds = report->error <= (vain ? admitted(n) : 0.0); /* and so do the pressures */
     bool pressures = rounds || has_pressures(n);

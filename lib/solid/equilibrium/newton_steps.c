@@ -24,6 +24,7 @@ static const double least_radius = 1e-3; /* by the spacing: shorter steps are no
 static const double least_left = 0.7;
 /* Of a contact point past what is opposite, by its width: what is opposite after the step is still found. */
 static const double step_by_width = 0.5;
+static const double same_load = 1e-9;
 /* Places at which the curves are looked at for an increment of the load. */
 enum { LOOKS = 100 };
 
@@ -108,13 +109,24 @@ double newton_span(const struct newton *n, double from, double to)
     return span;
 }
 
+/* Where the step of the load ends that goes on at `from`, no later than where a curve turns. */
+static double end_of_step(const struct newton *n, double from)
+{
+    double steps = (double)n->options->steps, passed = from + same_load;
+    double end = steps > 0.0 ? floor(fmax(passed, 0.0) * steps + 1.0) / steps : INFINITY;
+    for (int64_t c = 0; c < n->system->curve_count; c++) {
+        end = fmin(end, curve_next_turn(&n->system->curves[c], passed));
+    }
+    return end < n->load.hold * (1.0 - 1e-12) ? end : n->load.hold;
+}
+
 double newton_load_after(const struct newton *n, double from, double span)
 {
-    double low = from, high = from, part = (n->load.hold - from) / LOOKS;
+    double end = end_of_step(n, from), low = from, high = from, part = (end - from) / LOOKS;
     span = span > 0.0 ? span : n->load.most;
-    while (high < n->load.hold) {
+    while (high < end) {
         low = high;
-        high = high + part < n->load.hold * (1.0 - 1e-12) ? high + part : n->load.hold;
+        high = high + part < end * (1.0 - 1e-12) ? high + part : end;
         if (newton_span(n, from, high) > span * (1.0 + 1e-9)) {
             break;
         }

@@ -21,8 +21,10 @@ struct statics_options {
     int64_t most_steps;      /* 0: 1e5 of Newton's method, 1e6 of relaxation */
     int64_t frames;          /* equilibria to report, evenly over the load; the last one is the result; with
                                 hold any number above 0 */
-    bool in_time; /* Newton's method: the body stands at time 0 already, under the loads there; frame 0 is
-                     that equilibrium, and a frame may change the body, as a step of time does (body_step) */
+    int64_t steps; /* Newton's method: of the load, each of which ends in an equilibrium if there is friction;
+                      0 or a multiple of frames */
+    bool in_time;  /* Newton's method: the body stands at time 0 already, under the loads there; frame 0 is
+                      that equilibrium, and a frame may change the body, as a step of time does (body_step) */
     double (*hold)(void *context, double load); /* the load of the next equilibrium to report; NULL: evenly */
     frame_function
         *frame; /* NULL: none. Frame 0 is otherwise the initial u. In a call, the system's last evaluation is

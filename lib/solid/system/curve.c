@@ -84,6 +84,19 @@ double curve_value(const struct load_curve *curve, double s)
     return 0;
 }
 
+double curve_next_turn(const struct load_curve *curve, double s)
+{
+    for (int64_t i = 1; i + 1 < curve->count; i++) {
+        double before = curve->factor[i] - curve->factor[i - 1];
+        double after = curve->factor[i + 1] - curve->factor[i];
+        bool turns = before * after <= 0.0 && (before != 0.0 || after != 0.0);
+        if (turns && curve->time[i] > s * curve->end) {
+            return curve->time[i] / curve->end;
+        }
+    }
+    return (double)INFINITY;
+}
+
 double curve_largest(const struct load_curve *curve)
 {
     double largest = curve->count > 0 ? 0.0 : 1.0;

@@ -20,10 +20,10 @@ struct load_curve curve_of_kind(enum curve_kind kind);
 
 /* A curve through `count` points (time, factor), rows of 2 in `points`, which are copied: straight lines; or,
  * if `smooth`, as corners are impacts in dynamics, Steffen's piecewise cubic (Astron. Astrophys. 239, 1990),
- * which never overshoots between two points, and is a line for 2 points. `end` > 0 is the time of s = 1: the scene's end_time, or 1 in a quasi-static
- * scene. STATUS_INPUT, with a message `row N: ...` counting from 1, for fewer than two points, values that
- * are not finite, times that do not increase, a first time after 0, and a last time before `end`.
- * STATUS_SYSTEM: memory. */
+ * which never overshoots between two points, and is a line for 2 points. `end` > 0 is the time of s = 1: the
+ * scene's end_time, or 1 in a quasi-static scene. STATUS_INPUT, with a message `row N: ...` counting from 1,
+ * for fewer than two points, values that are not finite, times that do not increase, a first time after 0,
+ * and a last time before `end`. STATUS_SYSTEM: memory. */
 MUST_CHECK enum status curve_tabulate(struct load_curve *curve, int64_t count, const double *points,
                                       double end, bool smooth, struct error *error);
 
@@ -34,5 +34,9 @@ double curve_rate(const struct load_curve *curve, double s);
 
 /* The largest absolute factor; of a table at its points. */
 double curve_largest(const struct load_curve *curve);
+
+/* The first point after s, as a share of [0, 1], where a table turns, or begins or ends to be constant;
+ * INFINITY: none. */
+double curve_next_turn(const struct load_curve *curve, double s);
 
 void curve_free(struct load_curve *curve);
