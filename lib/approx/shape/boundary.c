@@ -55,7 +55,9 @@ static enum status row_finish(struct dense_row *row, double whole, int64_t part,
     int64_t at = averages->ptr[part], room = *capacity;
     RETURN_IF_ERROR(GROW_ARRAY(&averages->idx, at + row->count, &room, error));
     RETURN_IF_ERROR(GROW_ARRAY(&averages->phi, at + row->count, capacity, error));
-    qsort(row->touched, (size_t)row->count, sizeof *row->touched, compare_int32);
+    if (row->count > 0) { /* else there is nothing to sort, which qsort does not take */
+        qsort(row->touched, (size_t)row->count, sizeof *row->touched, compare_int32);
+    }
     for (int64_t i = 0; i < row->count; i++) {
         int32_t node = row->touched[i];
         averages->idx[at + i] = node;
