@@ -34,6 +34,7 @@ static enum status measure(struct newton *n, struct error *error)
 static bool goes_on(struct newton *n, struct error *error)
 {
     system_slide(n->system);
+    newton_touch(n, n->u, &n->at_u); /* as a run that begins here again does */
     n->friction.rests = true;
     n->watch.steps = 0; /* as at every equilibrium */
     n->watch.above = 0.0;
