@@ -57,6 +57,9 @@ static bool loads(const struct newton *n)
 static bool step(struct newton *n, struct error *error)
 {
     n->report->steps++;
+    if (n->options->in_time && n->rate.excess > (double)n->rate.cost) {
+        (void)newton_evaluate(n, n->u, &n->at_u); /* the frame before has changed the body */
+    }
     n->failure = n->rate.excess > (double)n->rate.cost ? measure(n, error) : STATUS_OK;
     if (n->failure != STATUS_OK) {
         return false;
