@@ -52,7 +52,7 @@ static void judge_statics(struct run *run, const struct statics_report *report)
         run_stability_check(run, report->load, false); /* as where the law itself has given way */
     }
     snprintf(run->at, sizeof run->at, "step %jd%s: ", report->steps, load);
-    bool may_slide = run->model->system.floats && system_has_friction(&run->model->system);
+    bool may_slide = system_held_by_friction(&run->model->system);
     const char *place = POINT_TEXT(scene->dim, run->model->system.X + report->worst_node * scene->dim);
     if (report->outcome == STATICS_STALLED) {
         const char *remedy =

@@ -34,13 +34,16 @@ static enum status measure(struct newton *n, struct error *error)
 static bool goes_on(struct newton *n, struct error *error)
 {
     system_slide(n->system);
-    newton_touch(n, n->u, &n->at_u); /* as a run that begins here again does */
     n->friction.rests = true;
     n->watch.steps = 0; /* as at every equilibrium */
     n->watch.above = 0.0;
     n->progress.error = INFINITY; /* which is progress */
     n->progress.step = n->report->steps;
-    n->failure = n->load.now == n->load.hold ? newton_give_frame(n, error) : STATUS_OK;
+    if (n->load.now == n->load.hold) {
+        n->failure = newton_give_frame(n, error);
+    } else {
+        newton_touch(n, n->u, &n->at_u); /* as a run that begins here again does */
+    }
     return n->failure == STATUS_OK && n->load.now < 1.0;
 }
 
@@ -57,10 +60,11 @@ static bool loads(const struct newton *n)
 static bool step(struct newton *n, struct error *error)
 {
     n->report->steps++;
-    if (n->options->in_time && n->rate.excess > (double)n->rate.cost) {
-        (void)newton_evaluate(n, n->u, &n->at_u); /* the frame before has changed the body */
+    bool pays = n->rate.excess > (double)n->rate.cost;
+    if (pays && n->options->in_time) {
+        (void)newton_evaluate(n, n->u, &n->at_u); /* the frame before may have changed the body */
     }
-    n->failure = n->rate.excess > (double)n->rate.cost ? measure(n, error) : STATUS_OK;
+    n->failure = pays ? measure(n, error) : STATUS_OK;
     if (n->failure != STATUS_OK) {
         return false;
     }

@@ -100,8 +100,8 @@ static int64_t note_progress(struct newton *n)
     for (int64_t i = 0; i < n->size; i++) {
         n->cg.product[i] = n->u[i] - n->progress.u[i];
     }
-    bool moved =
-        newton_longest(n, n->cg.product, NULL) > moves_on * report->move && !newton_held_by_friction(n);
+    bool moved = newton_longest(n, n->cg.product, NULL) > moves_on * report->move &&
+                 !system_held_by_friction(n->system);
     bool better = n->load.now > n->progress.load + least_growth || report->steps == 1 || halved;
     n->progress.moves = better ? 0 : n->progress.moves + moved;
     if (better || (moved && n->progress.moves <= most_moves)) {
@@ -125,7 +125,7 @@ static bool is_found(struct newton *n, bool vain, struct error *error)
         newton_estimate(n);
     }
     if (vain) {
-        bool hovers = system_has_touched(n->system) && !newton_held_by_friction(n);
+        bool hovers = system_has_touched(n->system) && !system_held_by_friction(n->system);
         double way = reported ? 0.0 : hovering_on_the_way * system_longest_way(n->system) / report->move;
         most = fmax(most, hovers ? fmax(most_hovering, way) : admitted(n));
     }
@@ -144,8 +144,8 @@ bool newton_ends(struct newton *n, bool stuck, enum statics_outcome *outcome, st
     bool found = n->load.corrections > 0 && holds && !n->friction.sticks &&
                  is_found(n, stuck || vain > most_vain, error);
     bool away = statics_is_away(n->system, n->report, n->scale.body);
-    *outcome = found                                ? STATICS_CONVERGED
-               : away || newton_held_by_friction(n) ? STATICS_AWAY
-                                                    : STATICS_STALLED;
+    *outcome = found                                        ? STATICS_CONVERGED
+               : away || system_held_by_friction(n->system) ? STATICS_AWAY
+                                                            : STATICS_STALLED;
     return found || stuck || away || vain > 4 * most_vain;
 }

@@ -289,5 +289,5 @@ bool newton_solve_model(struct newton *n, double of_last, double share, double r
         length = newton_longest(n, n->step.move, NULL);
     }
     note_products(n, MOST_ITERATIONS, now / n->step.square, &lanczos);
-    return !newton_held_by_friction(n) || n->friction.settled;
+    return !system_held_by_friction(n->system) || n->friction.settled;
 }

@@ -219,9 +219,6 @@ bool newton_leave(struct newton *n);
 /* Let points slip again, at an equilibrium u without slip. */
 void newton_let_slip(struct newton *n);
 
-/* Whether friction alone may hold a body, which slides if it does not. */
-bool newton_held_by_friction(const struct newton *n);
-
 /* ---- newton_ends.c ---- */
 
 /* Let the multipliers of nodal pressures and contacts advance by what was evaluated at u, and take the

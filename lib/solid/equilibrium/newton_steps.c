@@ -24,14 +24,9 @@ static const double least_radius = 1e-3; /* by the spacing: shorter steps are no
 static const double least_left = 0.7;
 /* Of a contact point past what is opposite, by its width: what is opposite after the step is still found. */
 static const double step_by_width = 0.5;
-static const double same_load = 1e-9;
+static const double same_load = 1e-9; /* loads that differ by less are the same */
 /* Places at which the curves are looked at for an increment of the load. */
 enum { LOOKS = 100 };
-
-bool newton_held_by_friction(const struct newton *n)
-{
-    return n->system->floats && system_has_friction(n->system);
-}
 
 /* Evaluate u + step; whether no cell collapses on the way, and the residual does not grow by too much. */
 static bool try_step(struct newton *n)
@@ -145,7 +140,7 @@ bool newton_begin_increment(struct newton *n, double from, double to)
     newton_set_load(n, from, to);
     memset(n->step.move, 0, (size_t)n->size * sizeof *n->step.move);
     meet_conditions(n);
-    system_predict_friction(n->system, newton_held_by_friction(n));
+    system_predict_friction(n->system, system_held_by_friction(n->system));
     if (system_acts_outside(n->system)) {
         system_change_load(n->system, n->u, from, to, n->cg.product, n->at_u.smooth);
         newton_touch(n, n->u, &n->at_u);
@@ -271,7 +266,7 @@ static bool solve(struct newton *n)
     bool whole = newton_solve_model(n, 0.0, n->friction.settled ? left_at_first : left_of_correction(n),
                                     n->step.radius);
     n->friction.settled = false;
-    if (whole || n->friction.sticks || !newton_held_by_friction(n)) {
+    if (whole || n->friction.sticks || !system_held_by_friction(n->system)) {
         return whole;
     }
     hold(n, true);

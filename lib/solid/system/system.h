@@ -158,6 +158,10 @@ bool system_has_potential(const struct solid_system *system);
 /* Whether a contact has friction; functions of friction.h for all contacts; and what friction has dissipated,
  * J (2D: J/m). */
 bool system_has_friction(const struct solid_system *system);
+
+/* Whether friction alone may hold a body, which slides if it does not. */
+bool system_held_by_friction(const struct solid_system *system);
+
 void system_predict_friction(struct solid_system *system, bool sticks);
 void system_relax_friction(struct solid_system *system);
 void system_hold_friction(struct solid_system *system, bool sticks);

@@ -53,6 +53,11 @@ bool system_has_friction(const struct solid_system *system)
     return any;
 }
 
+bool system_held_by_friction(const struct solid_system *system)
+{
+    return system->floats && system_has_friction(system);
+}
+
 void system_predict_friction(struct solid_system *system, bool sticks)
 {
     for (int64_t c = 0; c < system->contact_count; c++) {
