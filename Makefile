@@ -63,7 +63,7 @@ UNIT_TESTS := $(patsubst tests/unit/%.c,$(BUILD)/tests/%,$(wildcard tests/unit/*
 FUZZ_TARGETS := $(patsubst tests/fuzz/%.c,$(BUILD)/fuzz/%,$(filter-out %/replay.c,$(wildcard tests/fuzz/*.c)))
 MAN_PAGES := $(TOOLS:%=$(BUILD)/man/man1/%.1) $(patsubst tools/%,$(BUILD)/man/man5/%,$(wildcard tools/*.5))
 # Programs that the command-line tests use.
-TEST_HELPERS := $(BUILD)/tests/helper/damage $(BUILD)/tests/helper/phantom $(BUILD)/tests/helper/deny.so
+TEST_HELPERS := $(BUILD)/tests/helper/damage $(BUILD)/tests/helper/phantom $(BUILD)/tests/helper/deny.so $(BUILD)/tests/helper/keep.so
 
 .PHONY: all lib man deps check check-all tested clean always
 all: $(PROGRAMS) $(MAN_PAGES)

@@ -98,3 +98,37 @@ SCENE
     mtled -q -c run.ckpt run.scene table.mts 2> said > again.dat
     [ -z "$(find . -name 'run.ckpt*')" ]
 }
+
+# from_each_step SCENE LEAST: a run that goes on from the checkpoint of any of its steps, of which there are at least LEAST, ends with the same bytes.
+from_each_step() {
+    local kept ended=0
+    rm -f run.ckpt*
+    LD_PRELOAD=$BUILD/tests/helper/keep.so mtled -q -c run.ckpt -e 0 "$1" small.mts > whole.dat
+    for kept in run.ckpt.*; do
+        mv "$kept" run.ckpt
+        mtled -q -c run.ckpt "$1" small.mts > again.dat
+        cmp whole.dat again.dat
+        ended=$((ended + 1))
+    done
+    echo "$1: $ended steps"
+    [ "$ended" -ge "$2" ]
+}
+
+@test "from each step of a run on to the same bytes: with friction, with memory, with the boundary prescribed" {
+    cloud -d 2 -k jittered -n 9,5 --box 0,0.1,0,0.05 --jitter 0.2 2> note | shapefn > small.mts 2>> note
+    printf -- '-1 0\n9 0\n' > floor.tsv
+    printf '0 0\n.5 1\n4 1\n' > press.tsv
+    printf '0 0\n.5 0\n1 1\n' > drag.tsv
+    { block quasi-static
+        printf '[contact floor]\nfacets = ymin\nrigid = floor.tsv\nunit = m\nside = left\nfriction = 0.3\ntranslation = 0.01, 0\ncurve = drag.tsv\n'
+        printf '[displacement press]\nfacets = ymax\ncomponents = free, -0.005\n[displacement hold]\nfacets = ymax\ncomponents = 0, free\n'; } > friction.scene
+    from_each_step friction.scene 20
+    { block quasi-static 'duration = 4' | sed 's/^E = .*/&\nprony = .3 .2, .4 2/; s/^nu = .*/nu = 0.49/'
+        held_below
+        printf '[displacement top]\nfacets = ymax\ncomponents = 0, -0.01\ncurve = press.tsv\n'; } > memory.scene
+    from_each_step memory.scene 5
+    { block quasi-static | sed 's/^nu = .*/nu = 0.499/'
+        printf '[displacement all]\nfacets = *\ntable = bent.tsv\nunit = m\n'; } > bent.scene
+    awk 'BEGIN { for (i = 0; i <= 20; i++) for (j = 0; j <= 10; j++) { x = i / 200; y = j / 200; print x, y, 5 * x * y - .02 * x, -2 * x * x + .1 * y } }' > bent.tsv
+    from_each_step bent.scene 4
+}
