@@ -84,8 +84,8 @@ stress.frame.2 strain.frame.2 u.frame.3 parameters.frame.3 stress.frame.3 strain
     grep -q '^# energy.frames f8 4 3 .*unit=1,J/m,J/m cols=time,internal,contact' full.dat
     [ "$(rows reactions.frames full.dat | tail -n 1)" = "1 $(rows reactions full.dat | xargs)" ]
     [ "$(rows energy.frames full.dat | tail -n 1)" = "1 $(rows energy full.dat)" ]
-    [ "$(rows reactions.frames full.dat | head -n 1)" = "0 0 0 0 0" ]
-    rows reactions.frames full.dat | awk '$3 < last { exit failed = 1 } { last = $3 } END { exit failed }'
+    rows reactions.frames full.dat | awk 'NR == 1 { for (i = 1; i <= 5; i++) if ($i ^ 2 > 1e-12 ^ 2) exit 1 }' # of some 28 N/m
+    rows reactions.frames full.dat | awk 'NR > 1 && $3 < last { exit failed = 1 } { last = $3 } END { exit failed }'
     # The results of an earlier run leave the stream.
     pressed_block > block.scene
     mtled block.scene full.dat 2> note | bare | cmp - <(bare plain.dat)

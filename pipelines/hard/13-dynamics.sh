@@ -184,9 +184,10 @@ END
 done
 
 # ---- 16: a block at rest in the state of row 2, stretch .8, let go between its sliding supports ----
+# .65 of the critical step, a millisecond, as a penalty on the supports once had at .75.
 cloud -d 3 -k jittered -n 5 --jitter 0.15 --seed 7 --box 0,0.1,0,0.1,0,0.1 | shapefn -o "$work/block.mts" 2> /dev/null
 initial "$work/block.mts" '0.11574668 * $1, 0.11574668 * $2, -0.2 * $3, 0, 0, 0' > "$work/begin.tsv"
-for margin in 0.75 0.25; do
+for margin in 0.65 0.2167; do
     analysis=dynamic scene "$work/a.scene" <<END
 [initial]
 table = begin.tsv
@@ -213,8 +214,8 @@ energies() {
         END { print (NR > 100 ? most / W : "nan") }'
 }
 row 16 'release: W of the stretch 0.8, J/m3' \
-    "$({ [ ! -s "$work/0.75.dat" ] || mts print energy "$work/0.75.dat"; } | awk 'NR == 1 { printf "%.9g\n", $3 / 1e-3 }')" 70.051447 homogeneous-energy
-row 16 'release: largest drift of the balance / W' "$(energies 0.75 '$2 + $3 - $5 - start')" 0 energy-drift
+    "$({ [ ! -s "$work/0.65.dat" ] || mts print energy "$work/0.65.dat"; } | awk 'NR == 1 { printf "%.9g\n", $3 / 1e-3 }')" 70.051447 homogeneous-energy
+row 16 'release: largest drift of the balance / W' "$(energies 0.65 '$2 + $3 - $5 - start')" 0 energy-drift
 at_most 16 'release: drift at a third of the step / drift' \
-    "$(calc "$(energies 0.25 '$2 + $3 - $5 - start') / $(energies 0.75 '$2 + $3 - $5 - start')")" drift-order
-at_least 16 'release: largest kinetic energy / W' "$(energies 0.75 '$2')" released
+    "$(calc "$(energies 0.2167 '$2 + $3 - $5 - start') / $(energies 0.65 '$2 + $3 - $5 - start')")" drift-order
+at_least 16 'release: largest kinetic energy / W' "$(energies 0.65 '$2')" released

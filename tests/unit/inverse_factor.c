@@ -23,10 +23,10 @@ static void build(struct cube *cube, int dim, double poisson_ratio, bool penalis
     if (penalised) {
         const int32_t idx[] = {3, 7, 11};
         const double phi[] = {0.2, 0.5, 0.3}, direction[] = {0.6, 0.8, 0.0};
-        constraint_rows_init(&system->penalties.rows, dim);
-        GOOD(constraint_rows_add(&system->penalties.rows, 3, idx, phi, direction, 0.0, 0, 0, 0, &error));
-        ARRAY(system->penalties.stiffness, 1);
-        system->penalties.stiffness[0] = 300.0;
+        constraint_rows_init(&system->springs.rows, dim);
+        GOOD(constraint_rows_add(&system->springs.rows, 3, idx, phi, direction, 0.0, 0, 0, 0, &error));
+        ARRAY(system->springs.stiffness, 1);
+        system->springs.stiffness[0] = 300.0;
     }
     ARRAY(cube->K, size * size);
     GOOD(stiffness_rows_begin(system, &rows, &error));
@@ -81,9 +81,9 @@ TEST_IN_EACH_DIM(stiffness_is_exact)
     release(&cube);
 }
 
-/* A penalty adds the square of its row; a linear field of pure shear has the energy of the material also with
+/* A spring adds the square of its row; a linear field of pure shear has the energy of the material also with
  * nodal pressures. */
-TEST_IN_EACH_DIM(penalties_and_shear_have_their_energy)
+TEST_IN_EACH_DIM(springs_and_shear_have_their_energy)
 {
     double energy[2] = {0.0, 0.0};
     for (int penalised = 0; penalised < 2; penalised++) {

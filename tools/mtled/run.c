@@ -155,7 +155,7 @@ void run_start(struct run *run)
     SCRATCH double *force = run_new_values(run, system->node_count * system->dim);
     /* A body that has been cut may be inverted, at the edge of an earlier cut, in a field that was none of
      * its own. */
-    bool inverts = !(body_force(&system->body, run->u, force).least_jacobian > 0.0);
+    bool inverts = body_inverts(&system->body, run->u, force);
     const struct contact *through = inverts ? NULL : passed_through(run);
     if (inverts || through != NULL) {
         tool_note(run->tool, "--start: %s: u %s%s%s: begun at rest", run->start.name,

@@ -17,35 +17,57 @@ struct totals {
     double *moment;        /* rows * moment_count, N m (2D: N) */
 };
 
+/* Add a force f[3] at a deformed position. */
+static void add_force_at(const double *position, const double *f, int64_t row, struct totals *totals)
+{
+    double arm[3] = {0.0, 0.0, 0.0}, moment[3];
+    vector_subtract(totals->dim, position, totals->about, arm);
+    add_scaled(totals->dim, 1.0, f, totals->force + row * totals->dim);
+    vector_cross(arm, f, moment);
+    add_scaled(totals->moment_count, 1.0, moment + 3 - totals->moment_count,
+               totals->moment + row * totals->moment_count); /* in 2D only the last component */
+}
+
 /* Add a force on an average. It acts at the average of the deformed positions, as the weights have the sum 1
  * and reproduce linear fields. */
 static void add_force(const struct run *run, const struct average *average, const double *force, int64_t row,
                       struct totals *totals)
 {
-    int dim = totals->dim, count = totals->moment_count;
-    double arm[3] = {0.0, 0.0, 0.0}, f[3] = {0.0, 0.0, 0.0}, moment[3];
+    int dim = totals->dim;
+    double position[3] = {0.0, 0.0, 0.0}, f[3] = {0.0, 0.0, 0.0};
     for (int64_t i = 0; i < average->length; i++) {
         for (int a = 0; a < dim; a++) {
             int64_t at = (int64_t)average->idx[i] * dim + a;
-            arm[a] += average->phi[i] * (run->model->system.X[at] + run->u[at]);
+            position[a] += average->phi[i] * (run->model->system.X[at] + run->u[at]);
         }
     }
-    for (int a = 0; a < dim; a++) {
-        arm[a] -= totals->about[a];
-        f[a] = force[a];
-        totals->force[row * dim + a] += f[a];
-    }
-    vector_cross(arm, f, moment);
-    add_scaled(count, 1.0, moment + 3 - count,
-               totals->moment + row * count); /* in 2D only the last component */
+    memcpy(f, force, (size_t)dim * sizeof *f);
+    add_force_at(position, f, row, totals);
 }
 
-/* Add the forces of the conditions and of their constraint penalties, and those of the springs of supports.
- */
+/* Add the forces of the cells on prescribed values. */
+static void add_values(const struct run *run, struct totals *totals)
+{
+    struct body *body = &run->model->system.body;
+    prescribed_values_collect(body);
+    for (int64_t i = 0; i < body->cells.prescribed.count; i++) {
+        const struct prescribed_value *item = &body->cells.prescribed.items[i];
+        double position[3];
+        memcpy(position, item->place, sizeof position);
+        add_scaled(totals->dim, 1.0, item->value, position);
+        for (int k = 0; k < item->count; k++) {
+            double force[3] = {0.0, 0.0, 0.0};
+            add_scaled(totals->dim, item->force[k], item->axis + k * totals->dim, force);
+            add_force_at(position, force, item->section[k], totals);
+        }
+    }
+}
+
+/* Add the forces of the conditions on averages, and those of springs. */
 static void add_conditions(const struct run *run, struct totals *totals)
 {
     const struct solid_system *system = &run->model->system;
-    const struct constraint_rows *rows = &system->rows, *penalties = &system->penalties.rows;
+    const struct constraint_rows *rows = &system->rows, *springs = &system->springs.rows;
     int dim = totals->dim;
     double force[3];
     for (int64_t r = 0; r < rows->count; r++) {
@@ -59,13 +81,13 @@ static void add_conditions(const struct run *run, struct totals *totals)
         }
         add_force(run, &average, force, rows->section[r], totals);
     }
-    for (int64_t r = 0; r < penalties->count; r++) {
-        double pull = system_penalty_force(system, r, run->u);
-        struct average average = constraint_rows_average(penalties, r);
+    for (int64_t r = 0; r < springs->count; r++) {
+        double pull = system_spring_force(system, r, run->u);
+        struct average average = constraint_rows_average(springs, r);
         for (int a = 0; a < dim; a++) {
-            force[a] = pull * penalties->direction[r * dim + a];
+            force[a] = pull * springs->direction[r * dim + a];
         }
-        add_force(run, &average, force, penalties->section[r], totals);
+        add_force(run, &average, force, springs->section[r], totals);
     }
 }
 
@@ -122,6 +144,7 @@ void run_put_forces(struct run *run, const struct instant *instant)
     totals.force = run_new_values(run, rows * totals.dim);
     totals.moment = run_new_values(run, rows * totals.moment_count);
     add_conditions(run, &totals);
+    add_values(run, &totals);
     for (int64_t c = 0; c < run->model->system.contact_count; c++) {
         const struct contact *contact = &run->model->system.contacts[c];
         int64_t row = scene->displacement_count + scene->support_count + contact->section;

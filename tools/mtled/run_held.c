@@ -61,7 +61,7 @@ void run_contacts_begin(const struct run *run)
     const struct solid_system *system = &run->model->system;
     check_motion(
         run, run->scene->path, "displacement",
-        fmax(prescribed_motion(system, &system->rows), prescribed_motion(system, &system->penalties.rows)));
+        fmax(prescribed_motion(system, &system->rows), prescribed_motion(system, &system->springs.rows)));
     for (int64_t c = 0; c < system->contact_count; c++) {
         const struct contact *contact = &system->contacts[c];
         if (contact->surface.facet_count > 0) {

@@ -194,7 +194,7 @@ enum status assembly_build(struct assembly *input, struct solid_system *system, 
     input->curves = NULL;
     input->curve_count = 0;
     constraint_rows_init(&system->rows, system->dim);
-    constraint_rows_init(&system->penalties.rows, system->dim);
+    constraint_rows_init(&system->springs.rows, system->dim);
     RETURN_IF_ERROR(NEW_ARRAY(&system->factor, system->curve_count, error));
     RETURN_IF_ERROR(lump_mass(input, system, error));
     RETURN_IF_ERROR(build_body(input, system, error));
@@ -205,7 +205,7 @@ enum status assembly_build(struct assembly *input, struct solid_system *system, 
     RETURN_IF_ERROR(assembly_add_points(input, system, error));
     RETURN_IF_ERROR(assembly_add_contacts(input, system, error));
     RETURN_IF_ERROR(system->contact_count > 0 ? find_floating(input, system, error) : STATUS_OK);
-    return system_share_penalties(system, error);
+    return system_share_springs(system, error);
 }
 
 void material_list_free(struct material_list *list)

@@ -7,23 +7,12 @@
 #include <math.h>
 #include <string.h>
 
-/* Constraint penalty, by the shear modulus over the size of a cell, as in Nitsche's method. From .0001 to 100
- * the forces on clamped blocks change by .2 %. */
-static const double constraint_penalty_factor = 10.0;
-
 static enum status add_row(const struct prescription *p, const struct boundary_averages *averages, int64_t a,
                            const double *direction, double target, struct error *error)
 {
     int64_t at = averages->ptr[a];
     static const double one = 1.0;
     struct constraint_rows *rows = &p->system->rows;
-    if (p->penalties) { /* about the stiffness of a layer of cells, times the area of the quadrature point */
-        struct average average = average_of_boundary(averages, a);
-        double unit = averages->area[a] / p->layer;
-        return system_append_penalty(p->system, &average, direction, target, p->condition->curve, p->number,
-                                     averages->node[a], p->modulus * unit,
-                                     p->condition->kind == CONDITION_NORMAL ? unit : 0.0, error);
-    }
     if (p->input->direct) {
         /* With a weight function that almost interpolates, the parameter equals the value. */
         return constraint_rows_add(rows, 1, &averages->node[a], &one, direction, target, p->condition->curve,
@@ -45,9 +34,8 @@ static void note_shared(const struct prescription *p, int32_t node, bool *shared
     }
 }
 
-/* Add the rows of one average along directions that no earlier condition holds at its node; penalties along
- * all directions. Where the whole displacement is prescribed, the directions are made orthogonal to those
- * prescribed before. */
+/* Add the rows of one average along directions that no earlier condition holds at its node. Where the whole
+ * displacement is prescribed, the directions are made orthogonal to those prescribed before. */
 static enum status add_rest(const struct prescription *p, const struct boundary_averages *averages, int64_t a,
                             bool *shared, struct error *error)
 {
@@ -55,13 +43,11 @@ static enum status add_rest(const struct prescription *p, const struct boundary_
     int32_t node = averages->node[a];
     struct demand demand;
     double mine[9];
-    bool full =
-        !p->penalties && prescription_directions(p->condition, p->input->cells.dim) == p->input->cells.dim;
+    bool full = prescription_directions(p->condition, p->input->cells.dim) == p->input->cells.dim;
     enum status status = prescription_demand(p, averages, a, false, &demand, error);
     for (int k = 0; status == STATUS_OK && k < demand.count; k++) {
         double rest[3], target = demand.value[k], *direction = demand.direction + k * dim;
-        double length =
-            p->penalties ? 1.0 : held_rest(p->held, node, full ? count : 0, mine, direction, rest);
+        double length = held_rest(p->held, node, full ? count : 0, mine, direction, rest);
         if (!(length > HELD_LEAST)) {
             if (shared != NULL) {
                 note_shared(p, node, shared);
@@ -134,23 +120,60 @@ static enum status add_all(const struct prescription *p, const struct boundary_a
     return STATUS_OK;
 }
 
-/* Add penalties for variations of the field that the boundary averages of a set do not constrain. */
-static enum status add_penalties(struct prescription *p, struct error *error)
+/* Prescribe the values that smoothed cells take from a facet: the mean of what its quadrature points from
+ * `first` on have, and values at edges and nodes; along normals those of flat sides only, as a node of a
+ * curved one has no normal of its own. */
+static enum status prescribe_facet(const struct prescription *p, const struct boundary_averages *points,
+                                   int64_t first, const struct face_rows *rows, bool flat,
+                                   struct error *error)
+{
+    int dim = p->input->cells.dim, per_face = p->input->face_table.per_face;
+    double area = 0.0;
+    for (int64_t a = first; a < first + per_face; a++) {
+        area += points->area[a];
+    }
+    for (int r = 0; r < rows->count && (flat || r == 0); r++) {
+        double mean[3] = {0.0, 0.0, 0.0};
+        struct demand demand;
+        for (int64_t a = first; r == 0 && a < first + per_face; a++) {
+            RETURN_IF_ERROR(prescription_demand(p, points, a, false, &demand, error));
+            add_scaled(demand.count, points->area[a] / area, demand.value, mean);
+        }
+        if (r > 0) {
+            RETURN_IF_ERROR(prescription_demand_at(p, points->node[first], rows->place + r * dim,
+                                                   points->normal + first * dim, &demand, error));
+            memcpy(mean, demand.value, sizeof mean);
+        }
+        for (int k = 0; k < demand.count; k++) {
+            RETURN_IF_ERROR(prescribed_values_add(&p->system->body, rows, r, demand.direction + k * dim,
+                                                  mean[k], p->condition->curve, p->number, error));
+        }
+    }
+    return STATUS_OK;
+}
+
+/* Prescribe those of all facets of the set. */
+static enum status prescribe_values(const struct prescription *p, const struct boundary_sides *sides,
+                                    struct error *error)
 {
     const struct facet_set *set = &p->condition->facets;
+    struct body *body = &p->system->body;
     FREED_BY(boundary_averages_free) struct boundary_averages points = {0};
-    double area = 0.0, wave;
-    RETURN_IF_ERROR(boundary_points_build(&p->input->face_table, set, &points, error));
-    for (int64_t a = 0; a < points.count; a++) {
-        area += points.area[a];
+    NEW_SCRATCH(int64_t, found, set->count, error);
+    if (body->cells.prescribed.of_row == NULL) {
+        RETURN_IF_ERROR(prescribed_values_begin(body, &p->input->cells, &p->input->boundary, error));
     }
-    area /= (double)set->count;
-    p->penalties = true;
-    p->layer = p->input->cells.dim == 2 ? area : sqrt(2.0 * area);
-    RETURN_IF_ERROR(
-        assembly_penalty_modulus(p->input, set, constraint_penalty_factor, &p->modulus, &wave, error));
-    for (int64_t a = 0; a < points.count; a++) {
-        RETURN_IF_ERROR(add_rest(p, &points, a, NULL, error));
+    RETURN_IF_ERROR(faces_find(&p->input->boundary, set->count, set->facet, found, error));
+    RETURN_IF_ERROR(boundary_points_build(&p->input->face_table, set, &points, error));
+    for (int64_t f = 0; f < set->count; f++) {
+        struct face_rows rows;
+        bool flat = p->condition->kind != CONDITION_NORMAL ||
+                    sides->flat[sides->node_average_count + sides->facet_group[f]];
+        if (found[f] >= 0) {
+            prescribed_values_face(body, &p->input->cells, found[f], &rows);
+            RETURN_IF_ERROR(
+                prescribe_facet(p, &points, f * p->input->face_table.per_face, &rows, flat, error));
+        }
     }
     return STATUS_OK;
 }
@@ -248,7 +271,7 @@ static enum status add_averages(struct prescription *p, struct error *error)
     if (meets) {
         loosen(rows, &averages, &sides, first);
     }
-    return STATUS_OK;
+    return p->input->smoothed ? prescribe_values(p, &sides, error) : STATUS_OK;
 }
 
 /* Add constraint rows on values at the nodes of facets or of sets. */
@@ -291,7 +314,6 @@ static enum status add_condition(struct prescription *p, struct error *note, str
     }
     if (condition->facets.count > 0 && assembly_holds_averages(p->input)) {
         RETURN_IF_ERROR(add_averages(p, error));
-        RETURN_IF_ERROR(add_penalties(p, error));
     } else {
         RETURN_IF_ERROR(add_nodes(p, error));
     }
@@ -327,6 +349,9 @@ enum status assembly_add_conditions(const struct assembly *input, struct solid_s
                 RETURN_IF_ERROR(add_condition(&p, note, error));
             }
         }
+    }
+    if (input->smoothed) {
+        RETURN_IF_ERROR(prescribed_values_complete(&system->body, &input->cells, error));
     }
     return nodal_constraints_check(input, &nodal_constraints, note, error);
 }

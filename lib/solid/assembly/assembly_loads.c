@@ -1,5 +1,5 @@
 /* What acts on a body, loads, and what surrounds it: supports, which are springs at the quadrature points of
- * facets, penalties with target 0, and dashpots; and membranes. */
+ * facets, and dashpots; and membranes. */
 #include "solid/assembly/assembly.h"
 
 #include "base/lists.h"
@@ -178,10 +178,9 @@ static enum status add_springs(const struct assembly *input, int64_t number,
         int k = across_first ? (i + 1) % dim : i;
         double stiffness = points->area[p] * (k == 0 ? support->normal : support->tangential);
         if (stiffness > 0.0) {
-            RETURN_IF_ERROR(system_append_penalty(system, &average, axis + k * dim, 0.0, support->curve,
-                                                  (int32_t)(input->condition_count + number), points->node[p],
-                                                  stiffness, 0.0, error));
-            system->penalties.spring_count++;
+            RETURN_IF_ERROR(system_append_spring(system, &average, axis + k * dim, 0.0, support->curve,
+                                                 (int32_t)(input->condition_count + number), points->node[p],
+                                                 stiffness, error));
         }
     }
     return STATUS_OK;

@@ -115,10 +115,8 @@ static enum status add_point(const struct point_condition *p, int64_t i, struct 
                                                 error));
             continue;
         }
-        RETURN_IF_ERROR(system_append_penalty(p->system, &average, direction, target, p->condition->curve,
-                                              p->number, node, p->energy / (deviation * deviation), 0.0,
-                                              error));
-        p->system->penalties.spring_count++;
+        RETURN_IF_ERROR(system_append_spring(p->system, &average, direction, target, p->condition->curve,
+                                             p->number, node, p->energy / (deviation * deviation), error));
     }
     return STATUS_OK;
 }

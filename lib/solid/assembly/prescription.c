@@ -191,6 +191,18 @@ static bool is_free(const struct condition *condition, int i)
     return condition->kind == CONDITION_COMPONENTS && condition->is_free[i];
 }
 
+/* Demand the components of a value that the condition prescribes. */
+static void set_components(const struct condition *condition, int dim, const double *value,
+                           struct demand *demand)
+{
+    for (int i = 0; i < dim; i++) {
+        if (!is_free(condition, i)) {
+            demand->direction[demand->count * dim + i] = 1.0;
+            demand->value[demand->count++] = value[i];
+        }
+    }
+}
+
 int prescription_directions(const struct condition *condition, int dim)
 {
     int count = 0;
@@ -200,35 +212,42 @@ int prescription_directions(const struct condition *condition, int dim)
     return condition->kind == CONDITION_NORMAL ? 1 : count;
 }
 
+enum status prescription_demand_at(const struct prescription *p, int32_t node, const double *x,
+                                   const double *normal, struct demand *demand, struct error *error)
+{
+    int dim = p->input->cells.dim;
+    const struct condition *condition = p->condition;
+    double value[3] = {condition->components[0], condition->components[1], condition->components[2]};
+    *demand = (struct demand){.count = 0};
+    if (condition->kind == CONDITION_NORMAL) {
+        memcpy(demand->direction, normal, (size_t)dim * sizeof *normal);
+        demand->value[demand->count++] = condition->normal;
+        return STATUS_OK;
+    }
+    if (condition->kind == CONDITION_TABLE) {
+        RETURN_IF_ERROR(value_at(p, node, x, value, error));
+    }
+    set_components(condition, dim, value, demand);
+    return STATUS_OK;
+}
+
 enum status prescription_demand(const struct prescription *p, const struct boundary_averages *averages,
                                 int64_t a, bool at_node, struct demand *demand, struct error *error)
 {
     int dim = p->input->cells.dim;
     int32_t node = averages->node[a];
     const struct condition *condition = p->condition;
-    double value[3] = {condition->components[0], condition->components[1], condition->components[2]};
+    double mean[3] = {0.0, 0.0, 0.0};
+    if (condition->kind != CONDITION_TABLE || at_node) {
+        return prescription_demand_at(p, node, p->input->cells.x + (int64_t)node * dim,
+                                      averages->normal + a * dim, demand, error);
+    }
+    for (int64_t s = averages->sample_ptr[a]; s < averages->sample_ptr[a + 1]; s++) {
+        double sample[3];
+        RETURN_IF_ERROR(value_at(p, node, averages->sample_x + s * dim, sample, error));
+        add_scaled(dim, averages->sample_share[s], sample, mean);
+    }
     *demand = (struct demand){.count = 0};
-    if (condition->kind == CONDITION_NORMAL) {
-        memcpy(demand->direction, averages->normal + a * dim, (size_t)dim * sizeof *demand->direction);
-        demand->value[demand->count++] = condition->normal;
-        return STATUS_OK;
-    }
-    if (condition->kind == CONDITION_TABLE && at_node) {
-        RETURN_IF_ERROR(value_at(p, node, p->input->cells.x + (int64_t)node * dim, value, error));
-    }
-    if (condition->kind == CONDITION_TABLE && !at_node) { /* the mean over the samples of the average */
-        memset(value, 0, sizeof value);
-        for (int64_t s = averages->sample_ptr[a]; s < averages->sample_ptr[a + 1]; s++) {
-            double sample[3];
-            RETURN_IF_ERROR(value_at(p, node, averages->sample_x + s * dim, sample, error));
-            add_scaled(dim, averages->sample_share[s], sample, value);
-        }
-    }
-    for (int i = 0; i < dim; i++) {
-        if (!is_free(condition, i)) {
-            demand->direction[demand->count * dim + i] = 1.0;
-            demand->value[demand->count++] = value[i];
-        }
-    }
+    set_components(condition, dim, mean, demand);
     return STATUS_OK;
 }

@@ -42,8 +42,6 @@ struct prescription {
     int32_t number; /* of the condition */
     struct scattered_fit fit; /* CONDITION_TABLE: to its points */
     double *spacing;          /* CONDITION_TABLE: of the cells at each node, m */
-    bool penalties;           /* constraint penalties are added, not exact rows */
-    double modulus, layer;    /* of the penalties: modulus, Pa, and size of the cells there, m */
 };
 
 /* The displacements that a condition prescribes for one average: its components, or that along the normal. */
@@ -64,6 +62,11 @@ MUST_CHECK enum status prescription_check_table(const struct prescription *p, st
 MUST_CHECK enum status prescription_demand(const struct prescription *p,
                                            const struct boundary_averages *averages, int64_t a, bool at_node,
                                            struct demand *demand, struct error *error);
+
+/* What it prescribes at x, near a node; for a condition along normals the normal there. */
+MUST_CHECK enum status prescription_demand_at(const struct prescription *p, int32_t node, const double *x,
+                                              const double *normal, struct demand *demand,
+                                              struct error *error);
 
 /* Unless there is a note, *note receives one where what a table prescribes is off its row at a node of the
  * condition by more than a hundredth of the largest displacement: by what the fit makes of kinks and short

@@ -153,6 +153,9 @@ struct deformation {
  * N, in 2D N/m. With an inverted point the forces mean nothing. */
 struct deformation body_force(struct body *body, const double *u, double *force);
 
+/* Whether the field of u itself, without what is prescribed (prescribed_values.h), inverts a cell. */
+bool body_inverts(struct body *body, const double *u, double *force);
+
 /* body_own_force: the same for the nodes of this process only. body_gather completes on all processes a
  * vector[node_count * width], width <= dim, of which each has the values at its own nodes. */
 struct deformation body_own_force(struct body *body, const double *u, double *force);

@@ -198,6 +198,11 @@ static enum status share_parts(struct body *body, struct error *error)
     return halo_build(share->ranks, count, parts, body->dim, owner_of_part, body, &share->parts, error);
 }
 
+int body_share_owner(const struct body *body, int64_t row)
+{
+    return owner_of_row(body, row);
+}
+
 enum status body_share_rows(struct body *body, const bool *wanted, struct error *error)
 {
     RETURN_IF_ERROR(body->smoothed ? share_parts(body, error) : STATUS_OK);

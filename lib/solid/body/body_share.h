@@ -45,6 +45,9 @@ MUST_CHECK enum status body_share_values(const struct body *body, bool **wanted,
 /* The halos of rows, when operator and transpose are there; wanted[rows]: those that own nodes are in. */
 MUST_CHECK enum status body_share_rows(struct body *body, const bool *wanted, struct error *error);
 
+/* The process that sums the forces on a row of smoothed cells. */
+int body_share_owner(const struct body *body, int64_t row);
+
 /* The nodes whose displacements own rows need, once row_operator_finish has been called. */
 MUST_CHECK enum status body_share_nodes(struct body *body, struct error *error);
 

@@ -124,6 +124,7 @@ static void set_state(struct body *body, const double *u)
 {
     place_nodes(body, u);
     apply(body, body->u, body->smoothed ? body->cells.averages.value : body->derivative);
+    prescribed_values_place(body);
     for_blocks(body, set_block);
     if (body->averaged) {
         body_share_exchange(&body->share, &body->share.strains, 1, body->volumes.change);
@@ -145,6 +146,7 @@ static void evaluate(struct body *body, const double *u, double *force)
             body_share_exchange(share, &share->parts, body->dim, averages->part_force);
             sum_parts(body);
             nodal_offsets_push_rows(body);
+            prescribed_values_take_forces(body);
             body_share_exchange(share, &share->rows, stride, averages->force);
             apply_transposed(body, averages->force, body->force);
             nodal_offsets_push_nodes(body);
@@ -179,6 +181,15 @@ struct deformation body_force(struct body *body, const double *u, double *force)
     struct deformation deformation = body_own_force(body, u, force);
     body_gather(body, body->dim, force);
     return deformation;
+}
+
+bool body_inverts(struct body *body, const double *u, double *force)
+{
+    int64_t count = body->cells.prescribed.count;
+    body->cells.prescribed.count = 0;
+    bool inverts = !(body_force(body, u, force).least_jacobian > 0.0);
+    body->cells.prescribed.count = count;
+    return inverts;
 }
 
 void body_gather(struct body *body, int width, double *vector)

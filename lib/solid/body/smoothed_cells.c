@@ -122,6 +122,7 @@ enum status smoothed_cells_build(const struct body_input *input, struct body *bo
 void smoothed_cells_free(struct smoothed_cells *smoothed)
 {
     field_averages_free(&smoothed->averages);
+    prescribed_values_free(&smoothed->prescribed);
     FREE_ALL(smoothed->interpolant, smoothed->offset_stiffness, smoothed->variance_shear,
              smoothed->variance_bulk, smoothed->fibres, smoothed->linear_gradient, smoothed->group,
              smoothed->group_end, smoothed->kept);

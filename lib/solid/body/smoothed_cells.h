@@ -9,6 +9,7 @@
 #pragma once
 
 #include "solid/body/field_averages.h"
+#include "solid/body/prescribed_values.h"
 #include "solid/material/material.h"
 
 /* s_e by m_e. */
@@ -47,6 +48,7 @@ struct variance_fibres {
 
 struct smoothed_cells {
     struct field_averages averages;         /* on the edges and at the vertices */
+    struct prescribed_values prescribed;    /* on the boundary */
     double *interpolant;                    /* F_h at the last evaluation, as body->F */
     double *variance_shear, *variance_bulk; /* point_count, padded as body->weight: moduli of the energy
                                                within a cell, N m (2D: N) */

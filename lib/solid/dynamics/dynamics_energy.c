@@ -20,12 +20,12 @@ void dynamics_add_work(struct dynamics *d, const double *velocity, double step, 
         double path = rows->target[r] * (factor_to[rows->curve[r]] - factor_from[rows->curve[r]]);
         work += d->constraint.multiplier[r] * path;
     }
-    const struct constraint_rows *penalties = &system->penalties.rows;
-    for (int64_t r = 0; r < penalties->count; r++) {
-        double path =
-            penalties->target[r] * (factor_to[penalties->curve[r]] - factor_from[penalties->curve[r]]);
+    work += prescribed_values_work(&d->system->body, factor_from, factor_to);
+    const struct constraint_rows *springs = &system->springs.rows;
+    for (int64_t r = 0; r < springs->count; r++) {
+        double path = springs->target[r] * (factor_to[springs->curve[r]] - factor_from[springs->curve[r]]);
         if (path != 0.0) {
-            work += system_penalty_force(system, r, d->u) * path;
+            work += system_spring_force(system, r, d->u) * path;
         }
     }
     for (int64_t c = 0; c < system->contact_count; c++) {

@@ -49,9 +49,11 @@ double newton_difference(const struct newton *n, const double *move)
     return DIFFERENCE_STEP * n->scale.spacing / (longest > 0.0 ? longest : 1.0);
 }
 
-/* The forces at u + way move, without contacts. */
-static void push(struct newton *n, double way, const double *move, double *forces)
+/* The forces at u + way move, without contacts; follow: prescribed faces that lag behind the load go as far.
+ */
+static void push(struct newton *n, double way, const double *move, bool follow, double *forces)
 {
+    n->system->body.cells.prescribed.lag = follow ? 1.0 - way : 1.0;
     for (int64_t i = 0; i < n->size; i++) {
         n->trial[i] = n->u[i] + way * move[i];
     }
@@ -59,19 +61,25 @@ static void push(struct newton *n, double way, const double *move, double *force
     n->report->force_evaluations++;
 }
 
-void newton_multiply(struct newton *n, const double *move, double *product)
+/* As newton_multiply; follow: along with the change of prescribed faces that lag behind the load. */
+static void multiply_along(struct newton *n, const double *move, bool follow, double *product)
 {
     double epsilon = newton_difference(n, move), width = epsilon;
     const double *behind = n->at_u.smooth;
-    push(n, epsilon, move, product);
+    push(n, epsilon, move, follow, product);
     if (n->slackens) {
-        push(n, -epsilon, move, n->at_trial.smooth);
+        push(n, -epsilon, move, follow, n->at_trial.smooth);
         behind = n->at_trial.smooth;
         width = 2.0 * epsilon;
     }
     for (int64_t i = 0; i < n->size; i++) {
         product[i] = (behind[i] - product[i]) / width;
     }
+}
+
+void newton_multiply(struct newton *n, const double *move, double *product)
+{
+    multiply_along(n, move, false, product);
 }
 
 double newton_curvature(struct newton *n)
@@ -154,8 +162,8 @@ static double turn_search(struct newton *n)
 static void begin_model(struct newton *n)
 {
     memcpy(n->model.smooth, n->at_u.smooth, (size_t)n->size * sizeof *n->model.smooth);
-    if (newton_longest(n, n->step.move, NULL) > 0.0) {
-        newton_multiply(n, n->step.move, n->cg.product);
+    if (newton_longest(n, n->step.move, NULL) > 0.0) { /* the first step of an increment */
+        multiply_along(n, n->step.move, true, n->cg.product);
         add_scaled((int)n->size, -1.0, n->cg.product, n->model.smooth);
     }
     constraint_project(&n->preconditioner.constraint, NULL, n->model.smooth);

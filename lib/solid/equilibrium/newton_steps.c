@@ -136,8 +136,11 @@ double newton_load_after(const struct newton *n, double from, double span)
 
 bool newton_begin_increment(struct newton *n, double from, double to)
 {
+    struct prescribed_values *values = &n->system->body.cells.prescribed;
     double span = newton_span(n, from, to);
     newton_set_load(n, from, to);
+    values->lag = 1.0; /* they are where u is */
+    values->change = n->load.factor_change;
     memset(n->step.move, 0, (size_t)n->size * sizeof *n->step.move);
     meet_conditions(n);
     system_predict_friction(n->system, system_held_by_friction(n->system));
@@ -153,6 +156,7 @@ bool newton_begin_increment(struct newton *n, double from, double to)
     bool continues = n->load.last != 0.0;
     bool whole = newton_solve_model(n, continues ? span / n->load.last : 0.0,
                                     continues ? left : left_at_first, far * n->scale.body);
+    values->change = NULL;
     n->step.length = newton_longest(n, n->step.move, NULL);
     take_multipliers(n);
     return whole;

@@ -73,7 +73,7 @@ static void take_row(struct preconditioner *p, const struct constraint_rows *row
     coarse_rows_add_average(&p->rows, &average, 1.0, 1, rows->direction + r * p->dim);
 }
 
-/* Springs along rows: penalties, and in place of conditions, which the fields need not meet. stiffness[]: of
+/* Springs along rows, and in place of conditions, which the fields need not meet. stiffness[]: of
  * each; NULL: `usual`. */
 static void add_springs(struct preconditioner *p, const struct constraint_rows *rows, const double *stiffness,
                         double usual)
@@ -103,7 +103,7 @@ enum status preconditioner_assemble(struct preconditioner *p, struct solid_syste
     for (int64_t n = 0; n < p->node_count; n++) {
         mean += p->stiffness[n] / (double)p->node_count;
     }
-    add_springs(p, &system->penalties.rows, system->penalties.stiffness, 0.0);
+    add_springs(p, &system->springs.rows, system->springs.stiffness, 0.0);
     add_springs(p, &system->rows, NULL, mean);
     return STATUS_OK;
 }
@@ -128,7 +128,7 @@ enum status preconditioner_lay_out(struct preconditioner *p, const struct solid_
             take_node(body, (int32_t)n, &row, &p->rows);
             coarse_rows_widen(&p->rows, &p->profile);
         }
-        widen_by_rows(p, &system->penalties.rows);
+        widen_by_rows(p, &system->springs.rows);
         widen_by_rows(p, &system->rows);
         preconditioner_widen_by_contacts(p, system);
     } else {

@@ -34,7 +34,7 @@ struct preconditioner {
     struct sparse turns;          /* and those of the system, which it leaves out; the system's to free */
     struct coarse_space coarse;   /* count 0: none, M = B^-1 */
     int64_t size;                 /* coarse.count * dim: rows and columns of the coarse matrices */
-    /* The stiffness along the coarse fields of body, penalties and conditions, and the Cholesky factor of A,
+    /* The stiffness along the coarse fields of body, springs and conditions, and the Cholesky factor of A,
      * to which the contact nodes that A counts in add; N/m (2D: N/m2). */
     struct profile profile; /* of blocks by groups */
     double *body, *stiffness_factor;

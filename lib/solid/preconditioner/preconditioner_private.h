@@ -14,7 +14,7 @@ void preconditioner_widen_by_contacts(struct preconditioner *preconditioner,
 MUST_CHECK enum status preconditioner_lay_out(struct preconditioner *preconditioner,
                                               const struct solid_system *system, struct error *error);
 
-/* Set the stiffness of body, penalties and conditions along the coarse fields, as it is at the last
+/* Set the stiffness of body, springs and conditions along the coarse fields, as it is at the last
  * evaluation of a body of smoothed cells. */
 MUST_CHECK enum status preconditioner_assemble(struct preconditioner *preconditioner,
                                                struct solid_system *system, struct error *error);

@@ -279,8 +279,8 @@ void stiffness_row_make(const struct stiffness_rows *rows, int32_t p, int64_t co
         row->columns.number[column[k]] = (int32_t)k;
         row->columns.item[row->columns.count++] = column[k];
     }
-    add_squares(rows, &system->penalties.rows, &rows->penalised, system->penalties.stiffness, 0.0, p,
-                &row->columns, block);
+    add_squares(rows, &system->springs.rows, &rows->springs, system->springs.stiffness, 0.0, p, &row->columns,
+                block);
     add_squares(rows, &rows->touching, &rows->touched, rows->touching_stiffness, 0.0, p, &row->columns,
                 block);
     add_squares(rows, &system->rows, &rows->held, NULL, rows->hold, p, &row->columns, block);

@@ -86,7 +86,7 @@ enum status stiffness_rows_begin(const struct solid_system *system, struct stiff
     for (int64_t q = 0; q < body->point_count; q++) {
         set_cell(body, q, &rows->cells[q]);
     }
-    RETURN_IF_ERROR(transpose_lists(&system->penalties.rows, system->node_count, &rows->penalised, error));
+    RETURN_IF_ERROR(transpose_lists(&system->springs.rows, system->node_count, &rows->springs, error));
     RETURN_IF_ERROR(take_contacts(rows, error));
     return transpose_lists(&system->rows, system->node_count, &rows->held, error);
 }
@@ -94,7 +94,7 @@ enum status stiffness_rows_begin(const struct solid_system *system, struct stiff
 void stiffness_rows_free(struct stiffness_rows *rows)
 {
     sparse_free(&rows->columns);
-    sparse_free(&rows->penalised);
+    sparse_free(&rows->springs);
     sparse_free(&rows->held);
     sparse_free(&rows->touched);
     constraint_rows_free(&rows->touching);

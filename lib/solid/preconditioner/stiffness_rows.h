@@ -1,4 +1,4 @@
-/* The elastic stiffness K at rest of a body of smoothed cells, and of the penalties of conditions, by rows of
+/* The elastic stiffness K at rest of a body of smoothed cells, and of springs, by rows of
  * dim x dim blocks K_pq: exact but for the nodal pressures, which are taken without their projection, and
  * nodal offsets, which are left out: with them no fewer iterations; private to lib/solid/preconditioner.
  *
@@ -32,10 +32,10 @@ struct stiffness_rows {
     struct constraint_rows
         touching;               /* points of contacts with rigid surfaces, along their normals at rest, */
     double *touching_stiffness; /* N/m (2D: N/m2) */
-    struct sparse penalised, held, touched; /* a row for each of the caller's nodes: lists of penalties, of
+    struct sparse springs, held, touched; /* a row for each of the caller's nodes: lists of springs, of
                                                conditions, and of these points, with it */
-    double least_weight;                    /* entries of fields up to this are left out */
-    double hold;                            /* stiffness of conditions, N/m (2D: N/m2) */
+    double least_weight;                  /* entries of fields up to this are left out */
+    double hold;                          /* stiffness of conditions, N/m (2D: N/m2) */
 };
 
 MUST_CHECK enum status stiffness_rows_begin(const struct solid_system *system, struct stiffness_rows *rows,

@@ -70,7 +70,7 @@ double energy_kinetic(const struct solid_system *system, const double *v, const 
 
 double energy_internal(struct solid_system *system, const double *u)
 {
-    return body_energy(&system->body, u) + system_penalty_energy(system, u) +
+    return body_energy(&system->body, u) + system_spring_energy(system, u) +
            system_pull_membranes(system, u, NULL);
 }
 

@@ -8,7 +8,7 @@
 struct energy {
     double time;       /* s */
     double kinetic;    /* 1/2 v- M v+, of the velocities half a step before and after */
-    double internal;   /* elastic, of the body, its membranes and the constraint penalties */
+    double internal;   /* elastic, of the body, its membranes and springs */
     double contact;    /* of the contacts' penalties */
     double work;       /* of loads and prescribed motion, since the start */
     double dissipated; /* by damping and viscoelastic materials, since the start */
@@ -45,7 +45,7 @@ void energy_balance_complete(struct energy_balance *balance, bool first, struct 
 /* 1/2 v M w, J (2D: J/m). */
 double energy_kinetic(const struct solid_system *system, const double *v, const double *w);
 
-/* Energy of the body and its membranes at u, and of the constraint penalties at system->factor. */
+/* Energy of the body, its membranes and springs at u and system->factor. */
 double energy_internal(struct solid_system *system, const double *u);
 
 /* acts[curve_count]: whether an active stress or the prestress of a membrane is multiplied by a load factor;

@@ -94,7 +94,7 @@ static void hold_rows(struct parts *parts)
 {
     const struct solid_system *system = parts->system;
     const struct sliding *sliding = &system->sliding;
-    const struct constraint_rows *rows = &system->rows, *penalties = &system->penalties.rows;
+    const struct constraint_rows *rows = &system->rows, *springs = &system->springs.rows;
     for (int64_t r = 0, curved = 0; r < rows->count; r++) {
         if (curved < sliding->row_count && sliding->row[curved] == r) {
             curved++;
@@ -102,8 +102,8 @@ static void hold_rows(struct parts *parts)
             hold_row(parts, rows, r);
         }
     }
-    for (int64_t r = penalties->count - system->penalties.spring_count; r < penalties->count; r++) {
-        hold_row(parts, penalties, r);
+    for (int64_t r = 0; r < springs->count; r++) {
+        hold_row(parts, springs, r);
     }
 }
 

@@ -35,10 +35,9 @@ void system_free(struct solid_system *system)
     constraint_rows_free(&system->rows);
     sliding_free(&system->sliding);
     sparse_free(&system->turns);
-    constraint_rows_free(&system->penalties.rows);
-    constraint_nodes_free(&system->penalties.nodes);
-    FREE_ALL(system->penalties.stiffness, system->penalties.unit, system->penalties.volume,
-             system->penalties.force);
+    constraint_rows_free(&system->springs.rows);
+    constraint_nodes_free(&system->springs.nodes);
+    FREE_ALL(system->springs.stiffness, system->springs.force);
     body_free(&system->body);
     *system = (struct solid_system){0};
 }
@@ -46,15 +45,12 @@ void system_free(struct solid_system *system)
 enum status system_state(struct solid_system *system, const struct state *state, struct error *error)
 {
     const struct state_value factor = {"factor", STATE_NUMBERS, system->factor, system->curve_count};
-    const struct state_value stiffness = {"stiffness", STATE_NUMBERS, system->penalties.stiffness,
-                                          system->penalties.rows.count};
     const struct state_value stability[] = {{"least", STATE_NUMBERS, &system->stability.least, 1},
                                             {"node", STATE_COUNTS, &system->stability.node, 1},
                                             {"left", STATE_FLAGS, &system->stability.left, 1},
                                             {"left_load", STATE_NUMBERS, &system->stability.left_load, 1},
                                             {"left_node", STATE_COUNTS, &system->stability.left_node, 1}};
     RETURN_IF_ERROR(state_visit(state, "loads", &factor, 1, error));
-    RETURN_IF_ERROR(state_visit(state, "conditions", &stiffness, 1, error));
     RETURN_IF_ERROR(
         state_visit(state, "equilibrium", stability, sizeof stability / sizeof *stability, error));
     RETURN_IF_ERROR(prony_state(&system->body, state, error));
@@ -178,9 +174,8 @@ double system_longest_way(const struct solid_system *system)
     for (int64_t r = 0; r < system->rows.count; r++) {
         longest = fmax(longest, fabs(system->rows.target[r]));
     }
-    for (int64_t r = system->penalties.rows.count - system->penalties.spring_count;
-         r < system->penalties.rows.count; r++) {
-        longest = fmax(longest, fabs(system->penalties.rows.target[r]));
+    for (int64_t r = 0; r < system->springs.rows.count; r++) {
+        longest = fmax(longest, fabs(system->springs.rows.target[r]));
     }
     for (int64_t c = 0; c < system->contact_count; c++) {
         const struct contact *contact = &system->contacts[c];
@@ -197,14 +192,14 @@ bool system_has_inverse(const struct solid_system *system)
     return system->body.smoothed && system->node_lists != NULL;
 }
 
-static void add_penalties_to_bound(const struct solid_system *system, double *mass)
+static void add_springs_to_bound(const struct solid_system *system, double *mass)
 {
     for (int64_t c = 0; c < system->contact_count; c++) {
         contact_add_to_bound(&system->contacts[c], false, mass);
     }
-    for (int64_t r = 0; r < system->penalties.rows.count; r++) {
-        struct average average = constraint_rows_average(&system->penalties.rows, r);
-        average_add_squares(&average, system->penalties.stiffness[r], mass);
+    for (int64_t r = 0; r < system->springs.rows.count; r++) {
+        struct average average = constraint_rows_average(&system->springs.rows, r);
+        average_add_squares(&average, system->springs.stiffness[r], mass);
     }
 }
 
@@ -216,7 +211,7 @@ void system_relaxation_mass(struct solid_system *system, bool rest, double *mass
         for (int64_t i = 0; i < system->acting.membrane_count; i++) {
             membrane_add_to_bound(&system->acting.membranes[i], mass);
         }
-        add_penalties_to_bound(system, mass);
+        add_springs_to_bound(system, mass);
     }
     for (int64_t n = 0; n < system->node_count; n++) {
         sum += mass[n];

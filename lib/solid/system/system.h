@@ -58,19 +58,12 @@ struct acting {
     int64_t membrane_count;
 };
 
-/* Penalty stabilisation of the constraints. Boundary averages do not constrain variations of the field
- * within them, which grow under a pressure of about ten shear moduli. Penalties at the quadrature points
- * of the constrained facets hold the field to the same targets. Their forces vanish where the field meets
- * the targets, so that a linear field stays exact. The last ones are springs of supports, then those of
- * measured points: they are not of a condition that is met exactly as well. */
-struct penalties {
+/* Springs of supports and of measured points. */
+struct springs {
     struct constraint_rows rows;
     struct constraint_nodes nodes; /* their transpose; with several processes for own nodes */
-    int64_t spring_count;
-    double *stiffness; /* rows.count, N/m (2D: N/m2) */
-    double *unit;      /* rows.count: stiffness by modulus, m (2D: 1); 0: it stays as it is */
-    int32_t *volume;   /* rows.count: the nodal volume at a penalty's node; -1: none */
-    double *force;     /* rows.count: scratch */
+    double *stiffness;             /* rows.count, N/m (2D: N/m2) */
+    double *force;                 /* rows.count: scratch */
 };
 
 struct condition;
@@ -93,7 +86,7 @@ struct solid_system {
     const struct condition *conditions; /* of the rows, for messages; the caller's; NULL: not known */
     struct sparse turns;                /* node_count * dim rows: orthonormal motions that statics leaves out,
                                            indifferent rotations (rigid_modes.h); no rows: none */
-    struct penalties penalties;
+    struct springs springs;
     struct load_curve *curves;
     int64_t curve_count;
     double *lumped_mass; /* node_count, kg (2D: kg/m), positive: each cell shares its mass among its nodes */
@@ -118,6 +111,7 @@ MUST_CHECK enum status system_start(struct solid_system *system, const double *u
  * curves, into system->factor. Whether any is not 0 at 0. */
 double system_load_factor(const struct solid_system *system, int64_t curve, double s);
 void system_load_factors(struct solid_system *system, double s);
+
 bool system_begins_loaded(const struct solid_system *system);
 
 /* constraint_build for the rows of the system; the constraint keeps the pointer to `mass`. Linearly dependent
@@ -185,8 +179,7 @@ bool system_contacts_give_way(struct solid_system *system, const double *u, doub
 /* Whether a contact has pressed in an accepted state. */
 bool system_has_touched(const struct solid_system *system);
 
-/* Make the penalties of conditions stiffer where the pressure at the last evaluation needs it, and set those
- * of contacts (contact_stiffen); whether any has changed. */
+/* contact_stiffen of all contacts; whether any penalty has changed. */
 bool system_stiffen(struct solid_system *system);
 
 /* contact_measure of all contacts at parameters u and system->factor. */
@@ -202,39 +195,32 @@ double system_narrowest_tool(const struct solid_system *system);
  * targets. */
 double system_longest_change(const struct solid_system *system);
 
-/* force[node_count * dim] = internal forces of body, membranes and constraint penalties at u, that is, minus
- * the residual without loads and contacts. */
+/* force[node_count * dim] = internal forces of body, membranes and springs at u, that is, minus the residual
+ * without loads and contacts. */
 void system_resist(struct solid_system *system, const double *u, double *force);
 
-/* Add the forces of the constraint penalties to force[node_count * dim], with several processes at own nodes;
- * and the energy of the penalties; of the springs among them alone. */
-void system_add_penalties(struct solid_system *system, const double *u, double *force);
-double system_penalty_energy(const struct solid_system *system, const double *u);
+/* Add the forces of the springs to force[node_count * dim], with several processes at own nodes; their
+ * energy; and the force of spring r along its direction, N (2D: N/m). */
+void system_add_springs(struct solid_system *system, const double *u, double *force);
 double system_spring_energy(const struct solid_system *system, const double *u);
+double system_spring_force(const struct solid_system *system, int64_t r, const double *u);
 
-/* Append a constraint penalty: the arguments of constraint_rows_add, the stiffness, N/m (2D: N/m2), and that
- * by the modulus, m (2D: 1), if it may become stiffer, or 0. */
-MUST_CHECK enum status system_append_penalty(struct solid_system *system, const struct average *average,
-                                             const double *direction, double target, int32_t curve,
-                                             int32_t section, int32_t node, double stiffness, double unit,
-                                             struct error *error);
+/* Append a spring: the arguments of constraint_rows_add, and the stiffness, N/m (2D: N/m2). */
+MUST_CHECK enum status system_append_spring(struct solid_system *system, const struct average *average,
+                                            const double *direction, double target, int32_t curve,
+                                            int32_t section, int32_t node, double stiffness,
+                                            struct error *error);
 
-/* Build the transpose of the penalties, once all have been appended. */
-MUST_CHECK enum status system_share_penalties(struct solid_system *system, struct error *error);
-
-/* The part of system_stiffen that is of conditions. */
-bool system_stiffen_penalties(struct solid_system *system);
-
-/* Force of constraint penalty r at u along its direction, N (2D: N/m). */
-double system_penalty_force(const struct solid_system *system, int64_t r, const double *u);
+/* Build the transpose of the springs, once all have been appended. */
+MUST_CHECK enum status system_share_springs(struct solid_system *system, struct error *error);
 
 /* Whether there can be an inverse factor (inverse_stiffness.h): with smoothed cells and node values. */
 bool system_has_inverse(const struct solid_system *system);
 
 /* mass[node_count] > 0: the fictitious mass, a bound of each node's stiffness, N/m (2D: N/m2). Without an
- * inverse factor: (24) with the penalties of constraints and contacts, so that all parts of the body have
+ * inverse factor: (24) with springs and the penalties of contacts, so that all parts of the body have
  * about the same critical step, 1, however the cloud is graded. With one: (24) with the linear shape
- * functions of the cells, without penalties; only its ratio to the value at rest matters. `rest`: at rest. */
+ * functions of the cells, without these; only its ratio to the value at rest matters. `rest`: at rest. */
 void system_relaxation_mass(struct solid_system *system, bool rest, double *mass);
 
 /* Mean spacing of the nodes, m. */

@@ -104,7 +104,7 @@ void system_augment_contacts(struct solid_system *system)
 
 bool system_stiffen(struct solid_system *system)
 {
-    bool stiffer = system_stiffen_penalties(system);
+    bool stiffer = false;
     double shear = INFINITY;
     for (int64_t m = 0; m < system->body.material_count; m++) {
         shear = fmin(shear, system->body.materials[m].shear_modulus);

@@ -135,20 +135,20 @@ void system_resist(struct solid_system *system, const double *u, double *force)
     (void)body_own_force(&system->body, u, force);
     system->cost.force += omp_get_wtime() - started;
     negate(system, force);
-    system_add_penalties(system, u, force);
+    system_add_springs(system, u, force);
     (void)system_pull_membranes(system, u, force);
     negate(system, force);
     body_gather(&system->body, system->dim, force);
 }
 
-/* residual += what loads, membranes and penalties do at u; with several processes at own nodes. */
+/* residual += what loads, membranes and springs do at u; with several processes at own nodes. */
 static void act(struct solid_system *system, const double *u, double *residual)
 {
     double started = omp_get_wtime();
     system_add_loads(system, u, residual);
     (void)system_pull_membranes(system, u, residual);
     double loaded = omp_get_wtime();
-    system_add_penalties(system, u, residual);
+    system_add_springs(system, u, residual);
     system->cost.loads += loaded - started;
     system->cost.constraints += omp_get_wtime() - loaded;
 }

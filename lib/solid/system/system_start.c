@@ -1,5 +1,6 @@
 /* The start of a run near its result. */
 #include "base/memory.h"
+#include "base/vector.h"
 #include "solid/system/system.h"
 
 #include <math.h>
@@ -31,6 +32,8 @@ static enum status add_falling_curve(struct solid_system *system, struct error *
 enum status system_start(struct solid_system *system, const double *u, struct error *error)
 {
     struct constraint_rows *rows = &system->rows;
+    int dim = system->dim;
+    NEW_SCRATCH(double, at_node, system->node_count * dim, error);
     RETURN_IF_ERROR(hold_curves(system, error));
     rows->start_curve = (int32_t)system->curve_count;
     RETURN_IF_ERROR(add_falling_curve(system, error));
@@ -39,6 +42,10 @@ enum status system_start(struct solid_system *system, const double *u, struct er
     for (int64_t r = 0; r < rows->count; r++) {
         rows->start[r] = constraint_rows_value(rows, r, u) - constraint_rows_target(rows, r, system->factor);
     }
+    for (int64_t r = 0; r < rows->count; r++) {
+        add_scaled(dim, rows->start[r], rows->direction + r * dim, at_node + rows->node[r] * dim);
+    }
+    prescribed_values_start(&system->body, rows->start_curve, at_node);
     return STATUS_OK;
 }
 
