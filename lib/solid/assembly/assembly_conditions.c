@@ -5,6 +5,7 @@
 #include "base/vector.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 static enum status add_row(const struct prescription *p, const struct boundary_averages *averages, int64_t a,
@@ -22,22 +23,10 @@ static enum status add_row(const struct prescription *p, const struct boundary_a
                                direction, target, p->condition->curve, p->number, averages->node[a], error);
 }
 
-/* Mark in shared[], of an average's group, the components that are prescribed at its node. */
-static void note_shared(const struct prescription *p, int32_t node, bool *shared)
-{
-    int dim = p->held->dim;
-    const double *axis = p->held->axis + (int64_t)node * dim * dim;
-    for (int k = 0; k < p->held->count[node]; k++) {
-        for (int i = 0; i < dim; i++) {
-            shared[i] = shared[i] || fabs(axis[k * dim + i]) > HELD_LEAST;
-        }
-    }
-}
-
 /* Add the rows of one average along directions that no earlier condition holds at its node. Where the whole
  * displacement is prescribed, the directions are made orthogonal to those prescribed before. */
 static enum status add_rest(const struct prescription *p, const struct boundary_averages *averages, int64_t a,
-                            bool *shared, struct error *error)
+                            struct error *error)
 {
     int dim = p->input->cells.dim, count = 0;
     int32_t node = averages->node[a];
@@ -49,9 +38,6 @@ static enum status add_rest(const struct prescription *p, const struct boundary_
         double rest[3], target = demand.value[k], *direction = demand.direction + k * dim;
         double length = held_rest(p->held, node, full ? count : 0, mine, direction, rest);
         if (!(length > HELD_LEAST)) {
-            if (shared != NULL) {
-                note_shared(p, node, shared);
-            }
             continue;
         }
         if (full) {
@@ -88,10 +74,9 @@ static enum status note_sliding(const struct prescription *p, const struct bound
 }
 
 /* Add the rows of the first `count` averages, and record the values that the condition prescribes at their
- * nodes. With sides, mark the components that earlier conditions hold in each group. */
+ * nodes. */
 static enum status add_all(const struct prescription *p, const struct boundary_averages *averages,
-                           const struct boundary_sides *sides, int64_t count, int64_t *first_row,
-                           struct error *error)
+                           const struct boundary_sides *sides, int64_t count, struct error *error)
 {
     int dim = p->input->cells.dim;
     int64_t first = p->system->rows.count;
@@ -100,9 +85,7 @@ static enum status add_all(const struct prescription *p, const struct boundary_a
     for (int64_t a = 0; a < count; a++) {
         struct demand demand;
         int64_t before = p->system->rows.count;
-        first_row[a] = before;
-        RETURN_IF_ERROR(
-            add_rest(p, averages, a, sides != NULL ? p->shared + sides->group[a] * dim : NULL, error));
+        RETURN_IF_ERROR(add_rest(p, averages, a, error));
         bool curved = slides && !sides->flat[sides->node_average_count + sides->group[a]];
         for (int64_t r = before; curved && r < p->system->rows.count; r++) {
             RETURN_IF_ERROR(sliding_add_row(&p->system->sliding, r, error));
@@ -115,7 +98,6 @@ static enum status add_all(const struct prescription *p, const struct boundary_a
             memcpy(added->direction, demand.direction + k * dim, (size_t)dim * sizeof *added->direction);
         }
     }
-    first_row[count] = p->system->rows.count;
     held_note(p->held, &p->system->rows, first, p->system->rows.count);
     return STATUS_OK;
 }
@@ -178,74 +160,7 @@ static enum status prescribe_values(const struct prescription *p, const struct b
     return STATUS_OK;
 }
 
-/* Add the mean over side a, along the axes for which other conditions hold boundary averages of its group;
- * for a condition along normals, along the normal of the side. */
-static enum status add_side(const struct prescription *p, const struct boundary_averages *averages,
-                            const struct boundary_sides *sides, int64_t a, struct error *error)
-{
-    int dim = p->input->cells.dim;
-    const bool *shared = p->shared + sides->group[a] * dim;
-    struct demand demand;
-    enum status status = prescription_demand(p, averages, a, false, &demand, error);
-    if (p->condition->kind == CONDITION_NORMAL) {
-        bool any = shared[0] || shared[1] || shared[dim - 1];
-        return status == STATUS_OK && any ? add_row(p, averages, a, demand.direction, demand.value[0], error)
-                                          : status;
-    }
-    for (int k = 0; status == STATUS_OK && k < demand.count; k++) {
-        const double *axis = demand.direction + k * dim;
-        int i = axis[0] != 0.0 ? 0 : axis[1] != 0.0 ? 1 : 2;
-        if (shared[i]) {
-            status = add_row(p, averages, a, axis, demand.value[k], error);
-        }
-    }
-    return status;
-}
-
-/* Where sides of one piece of the set meet, let the tractions of each flat one have a mean of their own, as a
- * linear field needs it, along the axes that the condition prescribes: an average at a node of an edge takes
- * the traction of all its sides. A constant displacement needs none: the only linear field that meets it has
- * no traction. */
-static enum status part_tractions(const struct prescription *p, const struct boundary_averages *averages,
-                                  const struct boundary_sides *sides, struct error *error)
-{
-    int64_t dim = p->input->cells.dim;
-    NEW_SCRATCH(int64_t, count, sides->group_count, error);
-    if (p->condition->kind == CONDITION_COMPONENTS &&
-        prescription_directions(p->condition, p->input->cells.dim) == p->input->cells.dim) {
-        return STATUS_OK;
-    }
-    for (int64_t a = sides->node_average_count; a < averages->count; a++) {
-        count[sides->group[a]]++;
-    }
-    for (int64_t i = 0; i < sides->group_count * dim; i++) {
-        p->shared[i] = p->shared[i] || count[i / dim] > 1;
-    }
-    return STATUS_OK;
-}
-
-/* Mark the rows of the averages that lie on a flat side whose mean is prescribed, too. Those of average a
- * begin at first[a]. */
-static void loosen(const struct constraint_rows *rows, const struct boundary_averages *averages,
-                   const struct boundary_sides *sides, const int64_t *first)
-{
-    int64_t dim = rows->dim, count = sides->node_average_count;
-    for (int64_t m = count; m < averages->count; m++) {
-        for (int64_t a = 0; a < count && first[m] < first[m + 1]; a++) {
-            double turn = vector_dot(rows->dim, averages->normal + a * dim, averages->normal + m * dim);
-            bool within = sides->group[a] == sides->group[m] && turn > 1.0 - 0.5e-6; /* as flat sides */
-            for (int64_t r = first[a]; within && r < first[a + 1]; r++) {
-                for (int64_t k = first[m]; k < first[m + 1]; k++) {
-                    double cosine =
-                        vector_dot(rows->dim, rows->direction + r * dim, rows->direction + k * dim);
-                    rows->loose[r] = rows->loose[r] || fabs(cosine) > SAME_DIRECTION;
-                }
-            }
-        }
-    }
-}
-
-/* Add constraint rows on boundary averages, then on means over flat sides. */
+/* Add constraint rows on boundary averages. */
 static enum status add_averages(struct prescription *p, struct error *error)
 {
     FREED_BY(boundary_averages_free) struct boundary_averages averages = {0};
@@ -253,24 +168,8 @@ static enum status add_averages(struct prescription *p, struct error *error)
     bool normal = p->condition->kind == CONDITION_NORMAL; /* a node on an edge has one for each side */
     RETURN_IF_ERROR(
         boundary_sides_build(&p->input->face_table, &p->condition->facets, normal, &averages, &sides, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&p->shared, sides.group_count * p->input->cells.dim, error));
-    const struct constraint_rows *rows = &p->system->rows;
-    NEW_SCRATCH(int64_t, first, averages.count + 1, error);
-    RETURN_IF_ERROR(add_all(p, &averages, &sides, sides.node_average_count, first, error));
-    bool meets = false;
-    for (int64_t i = 0; i < sides.group_count * rows->dim; i++) {
-        meets = meets || p->shared[i];
-    }
-    RETURN_IF_ERROR(normal ? note_sliding(p, &sides, error) : part_tractions(p, &averages, &sides, error));
-    for (int64_t a = sides.node_average_count; a < averages.count; a++) {
-        if (sides.flat[a]) {
-            RETURN_IF_ERROR(add_side(p, &averages, &sides, a, error));
-        }
-        first[a + 1] = rows->count;
-    }
-    if (meets) {
-        loosen(rows, &averages, &sides, first);
-    }
+    RETURN_IF_ERROR(add_all(p, &averages, &sides, sides.node_average_count, error));
+    RETURN_IF_ERROR(normal ? note_sliding(p, &sides, error) : STATUS_OK);
     return p->input->smoothed ? prescribe_values(p, &sides, error) : STATUS_OK;
 }
 
@@ -288,8 +187,7 @@ static enum status add_nodes(struct prescription *p, struct error *error)
                                             condition->node_count, &input->node_lists, input->node_phi,
                                             &averages, error));
     }
-    NEW_SCRATCH(int64_t, first, averages.count + 1, error);
-    return add_all(p, &averages, NULL, averages.count, first, error);
+    return add_all(p, &averages, NULL, averages.count, error);
 }
 
 static enum status add_condition(struct prescription *p, struct error *note, struct error *error)
@@ -323,7 +221,7 @@ static enum status add_condition(struct prescription *p, struct error *note, str
 static void prescription_free(struct prescription *p)
 {
     scattered_fit_free(&p->fit);
-    FREE_ALL(p->spacing, p->shared);
+    free(p->spacing);
 }
 
 enum status assembly_add_conditions(const struct assembly *input, struct solid_system *system,

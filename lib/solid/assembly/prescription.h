@@ -38,10 +38,9 @@ struct prescription {
     struct solid_system *system;
     struct nodal_constraints *nodal_constraints; /* of all conditions */
     struct held_directions *held;                /* of earlier conditions */
-    bool *shared;   /* group_count * dim: earlier conditions hold that component at some nodes of the group */
-    int32_t number; /* of the condition */
-    struct scattered_fit fit; /* CONDITION_TABLE: to its points */
-    double *spacing;          /* CONDITION_TABLE: of the cells at each node, m */
+    int32_t number;                              /* of the condition */
+    struct scattered_fit fit;                    /* CONDITION_TABLE: to its points */
+    double *spacing;                             /* CONDITION_TABLE: of the cells at each node, m */
 };
 
 /* The displacements that a condition prescribes for one average: its components, or that along the normal. */

@@ -9,10 +9,8 @@
 #include <string.h>
 
 /* Rows with a smaller relative pivot count as linearly dependent and are dropped: the part of such a row that
- * is independent of the others is at most 1e-5 of it. Their forces are shared with the first shift; those of
- * loose rows with the second one, in so many passes. */
-static const double least_pivot = 1e-10, share_shift = 1e-8, loose_shift = 1e-2;
-enum { SHARE_PASSES = 3 };
+ * is independent of the others is at most 1e-5 of it. Their forces are shared with the shift. */
+static const double least_pivot = 1e-10, share_shift = 1e-8;
 
 void constraint_rows_init(struct constraint_rows *rows, int dim)
 {
@@ -22,7 +20,7 @@ void constraint_rows_init(struct constraint_rows *rows, int dim)
 void constraint_rows_free(struct constraint_rows *rows)
 {
     FREE_ALL(rows->ptr, rows->first, rows->list, rows->idx, rows->phi, rows->direction, rows->target,
-             rows->start, rows->curve, rows->section, rows->node, rows->loose);
+             rows->start, rows->curve, rows->section, rows->node);
     *rows = (struct constraint_rows){0};
 }
 
@@ -39,7 +37,6 @@ static enum status reserve(struct constraint_rows *rows, int64_t length, struct 
         RETURN_IF_ERROR(RESIZE_ARRAY(&rows->curve, capacity, error));
         RETURN_IF_ERROR(RESIZE_ARRAY(&rows->section, capacity, error));
         RETURN_IF_ERROR(RESIZE_ARRAY(&rows->node, capacity, error));
-        RETURN_IF_ERROR(RESIZE_ARRAY(&rows->loose, capacity, error));
         rows->capacity = capacity;
         rows->ptr[0] = rows->first[0] = 0;
     }
@@ -89,7 +86,6 @@ enum status constraint_rows_add(struct constraint_rows *rows, int64_t length, co
     rows->curve[row] = curve;
     rows->section[row] = section;
     rows->node[row] = node;
-    rows->loose[row] = false;
     return STATUS_OK;
 }
 
@@ -258,99 +254,21 @@ void constraint_project(struct constraint *constraint, const double *factor, dou
     constraint_spread(constraint, multiplier, u);
 }
 
-/* Set sign[r] of the rows of blocks along one direction in which rows are loose: 1 or -1, along it or
- * against; 0 of others. Returns whether there are any. */
-static bool find_loose(const struct constraint *constraint, double *sign)
-{
-    const struct constraint_rows *rows = constraint->rows;
-    const struct envelope *factor = &constraint->factor;
-    bool any = false;
-    for (int64_t b = 0; b < factor->block_count; b++) {
-        int64_t first = factor->block[b], end = factor->block[b + 1];
-        const double *along_first = rows->direction + factor->order[first] * rows->dim;
-        bool loose = false, parallel = true;
-        for (int64_t i = first; i < end; i++) {
-            int64_t r = factor->order[i];
-            sign[r] = along(rows, r, along_first);
-            parallel = parallel && fabs(sign[r]) > 1.0 - COARSE_ROUND_OFF;
-            loose = loose || rows->loose[r];
-        }
-        for (int64_t i = first; i < end && !(loose && parallel); i++) {
-            sign[factor->order[i]] = 0.0;
-        }
-        any = any || (loose && parallel);
-    }
-    return any;
-}
-
-/* The matrix that forces are shared by. */
-static enum status factorise_shares(const struct constraint *constraint, const double *sign,
-                                    struct envelope *factor, struct error *error)
-{
-    const struct constraint_rows *rows = constraint->rows;
-    SCRATCH int64_t *ptr = NULL, *column = NULL;
-    SCRATCH double *value = NULL;
-    RETURN_IF_ERROR(assemble(rows, constraint->node_count, constraint->mass, &ptr, &column, &value, error));
-    for (int64_t r = 0; r < rows->count; r++) {
-        for (int64_t i = ptr[r]; i < ptr[r + 1] && rows->loose[r] && sign[r] != 0.0; i++) {
-            value[i] *= column[i] == r ? 1.0 + loose_shift : 1.0;
-        }
-    }
-    return envelope_factorise(rows->count, ptr, column, value, 0.0, share_shift, factor, error);
-}
-
-/* Change the forces sum[] so that in each block with signs they add up to what force[] does. */
-static void keep_totals(const struct constraint *constraint, const struct envelope *factor,
-                        const double *sign, const double *force, double *sum, double *change)
-{
-    const struct envelope *rows = &constraint->factor;
-    memcpy(change, sign, (size_t)constraint->rows->count * sizeof *change);
-    envelope_solve(factor, change);
-    for (int64_t b = 0; b < rows->block_count; b++) {
-        double missing = 0.0, changed = 0.0;
-        for (int64_t i = rows->block[b]; i < rows->block[b + 1]; i++) {
-            int64_t r = rows->order[i];
-            missing += sign[r] * (force[r] - sum[r]);
-            changed += sign[r] * change[r];
-        }
-        for (int64_t i = rows->block[b]; i < rows->block[b + 1] && changed > 0.0; i++) {
-            sum[rows->order[i]] += missing / changed * change[rows->order[i]];
-        }
-    }
-}
-
 enum status constraint_share_out(const struct constraint *constraint, double *force, struct error *error)
 {
     const struct constraint_rows *rows = constraint->rows;
     FREED_BY(envelope_free) struct envelope factor = {0};
-    int64_t count = rows->count, size = constraint->node_count * rows->dim;
-    NEW_SCRATCH(double, sign, count, error);
-    bool loose = find_loose(constraint, sign);
-    if (constraint->factor.dropped == 0 && !loose) {
+    SCRATCH int64_t *ptr = NULL, *column = NULL;
+    SCRATCH double *value = NULL;
+    if (constraint->factor.dropped == 0) {
         return STATUS_OK;
     }
-    NEW_SCRATCH(double, u, size, error);
-    NEW_SCRATCH(double, sum, count, error);
-    NEW_SCRATCH(double, left, count, error);
-    RETURN_IF_ERROR(factorise_shares(constraint, sign, &factor, error));
-    for (int pass = 0; pass < (loose ? SHARE_PASSES : 1); pass++) {
-        for (int64_t r = 0; r < count; r++) {
-            left[r] = force[r] - sum[r];
-        }
-        memset(u, 0, (size_t)size * sizeof *u);
-        constraint_spread(constraint, left, u);
-        constraint_values(constraint, u, left);
-        envelope_solve(&factor, left);
-        for (int64_t r = 0; r < count; r++) {
-            sum[r] += left[r];
-        }
-    }
-    if (loose) {
-        keep_totals(constraint, &factor, sign, force, sum, left);
-    }
-    for (int64_t r = 0; r < count; r++) {
-        force[r] = constraint->factor.dropped > 0 || sign[r] != 0.0 ? sum[r] : force[r];
-    }
+    NEW_SCRATCH(double, u, constraint->node_count * rows->dim, error);
+    RETURN_IF_ERROR(assemble(rows, constraint->node_count, constraint->mass, &ptr, &column, &value, error));
+    RETURN_IF_ERROR(envelope_factorise(rows->count, ptr, column, value, 0.0, share_shift, &factor, error));
+    constraint_spread(constraint, force, u);
+    constraint_values(constraint, u, force);
+    envelope_solve(&factor, force);
     return STATUS_OK;
 }
 

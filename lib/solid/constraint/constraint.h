@@ -35,7 +35,6 @@ struct constraint_rows {
     int32_t *curve;   /* count: which load curve scales the target */
     int32_t *section; /* count: the caller's label, for messages and reactions */
     int32_t *node;    /* count: the node that messages name */
-    bool *loose; /* count: false; the caller's: another row is the mean over the side that this one is on */
 };
 
 void constraint_rows_init(struct constraint_rows *rows, int dim);
@@ -108,10 +107,7 @@ MUST_CHECK enum status constraint_factorise(const struct constraint_rows *rows, 
 void constraint_project(struct constraint *constraint, const double *factor, double *u);
 
 /* force[count]: the forces of the rows, zero for dropped rows, are replaced by those with the same nodal
- * forces and the least norm sum_r (G M^-1 G^T)_rr force_r^2. So linearly dependent rows share their force.
- * Where loose rows of one direction meet other sections, they are nearly dependent: large forces against each
- * other, which alternate from node to node, would move nothing. There the nodal forces stay nearly, their sum
- * exactly, and the norm of loose rows is small. */
+ * forces and the least norm sum_r (G M^-1 G^T)_rr force_r^2. So linearly dependent rows share their force. */
 MUST_CHECK enum status constraint_share_out(const struct constraint *constraint, double *force,
                                             struct error *error);
 
