@@ -53,7 +53,7 @@ static void add_values(const struct run *run, struct totals *totals)
     for (int64_t i = 0; i < body->cells.prescribed.count; i++) {
         const struct prescribed_value *item = &body->cells.prescribed.items[i];
         double position[3];
-        memcpy(position, item->place, sizeof position);
+        vector_middle(totals->dim, run->model->system.X, item->nodes, item->node, position);
         add_scaled(totals->dim, 1.0, item->value, position);
         for (int k = 0; k < item->count; k++) {
             double force[3] = {0.0, 0.0, 0.0};

@@ -117,6 +117,9 @@ static enum status prescribe_facet(const struct prescription *p, const struct bo
     for (int r = 0; r < rows->count && (flat || r == 0); r++) {
         double mean[3] = {0.0, 0.0, 0.0};
         struct demand demand;
+        if (r > 0 && prescribed_values_full(&p->system->body, rows, r)) {
+            continue; /* by a facet beside this one */
+        }
         for (int64_t a = first; r == 0 && a < first + per_face; a++) {
             RETURN_IF_ERROR(prescription_demand(p, points, a, false, &demand, error));
             add_scaled(demand.count, points->area[a] / area, demand.value, mean);

@@ -88,6 +88,13 @@ void prescribed_values_face(const struct body *body, const struct cells *cells, 
     }
 }
 
+bool prescribed_values_full(const struct body *body, const struct face_rows *rows, int r)
+{
+    const struct prescribed_values *values = &body->cells.prescribed;
+    int32_t item = values->of_row[rows->row[r]];
+    return item >= 0 && values->items[item].count == body->dim;
+}
+
 enum status prescribed_values_add(struct body *body, const struct face_rows *rows, int r,
                                   const double *direction, double target, int32_t curve, int32_t section,
                                   struct error *error)
@@ -101,7 +108,6 @@ enum status prescribed_values_add(struct body *body, const struct face_rows *row
         struct prescribed_value *added = &values->items[values->count++];
         *added = (struct prescribed_value){.row = row, .nodes = rows->nodes[r]};
         memcpy(added->node, rows->node[r], sizeof added->node);
-        memcpy(added->place, rows->place + r * dim, (size_t)dim * sizeof *rows->place);
     }
     struct prescribed_value *item = &values->items[values->of_row[row]];
     values->is_face[rows->face] = true;

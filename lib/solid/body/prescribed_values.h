@@ -18,9 +18,8 @@ struct faces;
 struct prescribed_value {
     int64_t row;  /* of field_averages.h, */
     int64_t part; /* and the first part of the forces on it */
-    int nodes;    /* it is in the middle of so many */
+    int nodes;    /* at rest it is in the middle of so many */
     int32_t node[3];
-    double place[3];              /* at rest, m */
     int count;                    /* prescribed directions: */
     double axis[9];               /* count * dim: unit, orthogonal to each other, */
     int32_t section[3], curve[3]; /* of each: its condition, and the curve of its load factor, */
@@ -63,6 +62,9 @@ struct face_rows {
 };
 void prescribed_values_face(const struct body *body, const struct cells *cells, int64_t face,
                             struct face_rows *rows);
+
+/* Whether row r has values along all directions. */
+bool prescribed_values_full(const struct body *body, const struct face_rows *rows, int r);
 
 /* Prescribe the value of row r along a unit direction, if earlier ones of this row are orthogonal to it. */
 MUST_CHECK enum status prescribed_values_add(struct body *body, const struct face_rows *rows, int r,

@@ -111,7 +111,6 @@ MUST_CHECK enum status system_start(struct solid_system *system, const double *u
  * curves, into system->factor. Whether any is not 0 at 0. */
 double system_load_factor(const struct solid_system *system, int64_t curve, double s);
 void system_load_factors(struct solid_system *system, double s);
-
 bool system_begins_loaded(const struct solid_system *system);
 
 /* constraint_build for the rows of the system; the constraint keeps the pointer to `mass`. Linearly dependent
